@@ -1,0 +1,3 @@
+//! The `imp` command: arguments to one call, errors to stderr, an exit status.
+
+fn main() {}

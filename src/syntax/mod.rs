@@ -1,0 +1,3 @@
+//! Source text to tokens to AST; no meaning.
+
+pub mod ast;
