@@ -1,1 +1,58 @@
-//! See the crate documentation.
+//! Graph to graph and graph to lanes: gradients, points along rays, interval and affine versions, and the kernel's ABI.
+
+use std::sync::Arc;
+
+use crate::graph::Graph;
+use crate::graph::Value;
+use crate::interval::Interval;
+
+/// What a program computes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Arithmetic {
+    /// Points: rounded to nearest, nothing proved.
+    Point,
+    /// The natural interval extension.
+    Interval,
+    /// AF1 forms intersected with the natural extension: one noise symbol per input of [`Spec::symbols`].
+    Affine,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Rounding {
+    /// Every enclosure holds.
+    Outward,
+    /// Every operation rounded to nearest, as the source papers did it: enclosures may fail, nothing is proved.
+    Nearest,
+}
+
+/// One result of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Output {
+    /// The value at points ([`Arithmetic::Point`] only): one slot.
+    Value(Value),
+    /// Enclosure and verdict: three slots.
+    Enclosure(Value),
+    /// Verdict bits alone (`kernel::verdict`): one slot.
+    Verdict(Value),
+}
+
+/// An order for a kernel.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    pub graph: Arc<Graph>,
+    /// Lane inputs, in slot order, by the name of a graph input.
+    pub inputs: Vec<String>,
+    /// Uniform inputs (parameters), in order; every graph input is in one of the two lists.
+    pub uniforms: Vec<String>,
+    pub outputs: Vec<Output>,
+    /// What is known of values beforehand: each listed value is intersected with its interval, and where the
+    /// intersection is empty the box lies outside the domain. A scene lists its coordinates with its domain here.
+    pub domain: Vec<(Value, Interval)>,
+    /// What is promised of inputs: uniforms and lane inputs lie within these; the caller holds to it. Used to know
+    /// signs and to exclude overflow; inputs not listed may be anything.
+    pub promises: Vec<(String, Interval)>,
+    pub arithmetic: Arithmetic,
+    /// The inputs that carry a noise symbol of their own, with [`Arithmetic::Affine`]; at most three.
+    pub symbols: Vec<String>,
+    pub rounding: Rounding,
+}

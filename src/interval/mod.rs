@@ -1,1 +1,3 @@
-//! See the crate documentation.
+//! Placeholder until the arithmetic lands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval;
