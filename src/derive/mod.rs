@@ -1,10 +1,39 @@
 //! Graph to graph and graph to lanes: gradients, points along rays, interval and affine versions, and the kernel's ABI.
 
+mod affine;
+mod elementary;
+mod ends;
+mod gradient;
+mod interval;
+pub mod lanes;
+mod magnitude;
+mod point;
+mod ray;
+
 use std::sync::Arc;
 
 use crate::graph::Graph;
 use crate::graph::Value;
 use crate::interval::Interval;
+use crate::passes::bounds;
+
+pub use gradient::derivative;
+pub use gradient::gradient;
+pub use gradient::power_ratio;
+pub use lanes::LaneProgram;
+pub use ray::DIRECTION;
+pub use ray::ORIGIN;
+pub use ray::PARAMETER;
+pub use ray::RayGraph;
+pub use ray::along_ray;
+pub use ray::centred;
+
+/// The format in which a kernel computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Precision {
+    Single,
+    Double,
+}
 
 /// What a program computes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -36,6 +65,14 @@ pub enum Output {
     Verdict(Value),
 }
 
+impl Output {
+    pub fn value(self) -> Value {
+        match self {
+            Output::Value(value) | Output::Enclosure(value) | Output::Verdict(value) => value,
+        }
+    }
+}
+
 /// An order for a kernel.
 #[derive(Debug, Clone)]
 pub struct Spec {
@@ -55,4 +92,20 @@ pub struct Spec {
     /// The inputs that carry a noise symbol of their own, with [`Arithmetic::Affine`]; at most three.
     pub symbols: Vec<String>,
     pub rounding: Rounding,
+}
+
+impl Spec {
+    /// The lane program of this order: bounds over the domain first, then the arithmetic asked for.
+    pub fn lower(&self, precision: Precision) -> LaneProgram {
+        let promised = |name: &String| {
+            let promise = self.promises.iter().find(|(n, _)| n == name);
+            promise.map_or(Interval::ENTIRE, |&(_, range)| range)
+        };
+        let inputs: Vec<Interval> = self.graph.variables().iter().map(promised).collect();
+        let bounds = bounds(&self.graph, &inputs, &self.domain);
+        match self.arithmetic {
+            Arithmetic::Point => point::lower(self, &bounds, precision),
+            Arithmetic::Interval | Arithmetic::Affine => interval::lower(self, &bounds, precision),
+        }
+    }
 }

@@ -146,6 +146,7 @@ op_table! {
     LessEqual 2 "less_equal" ThroughInterval Jumps "1 where x <= y, else 0.";
     Equal 2 "equal" ThroughInterval Jumps "1 where x = y, else 0.";
     Select 3 "select" ThroughInterval Jumps "The second operand where the first is 1, the third where it is 0; undecided, the hull of both.";
+    Kink 3 "kink" ThroughInterval Jumps "The second operand where the first is < 0, the third where it is > 0, both where it may be 0: the derivative at a kink.";
     SelectJump 3 "select_jump" ThroughInterval Jumps "Select of derivatives across a possible jump: undecided it is the whole line.";
 }
 
