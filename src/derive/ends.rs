@@ -254,11 +254,7 @@ impl Builder {
         let low = self.low(x);
         let low = self.max(low, zero);
         let nlo = self.sqrt_nlo(low);
-        Applied {
-            ends: Ends { nlo, hi },
-            empty: self.less(x.hi, zero),
-            continuous: self.less_equal(x.nlo, zero),
-        }
+        Applied { ends: Ends { nlo, hi }, empty: self.less(x.hi, zero), continuous: self.less_equal(x.nlo, zero) }
     }
 
     /// Set-based quotient: 1/[0, 1] is [1, inf), 1/[0, 0] is empty, and no infinity depends on the sign of a zero.

@@ -169,9 +169,26 @@ impl Rule<'_> {
                 let difference = self.one_minus(square);
                 self.reciprocal(difference)
             }
-            Op::Const(_) | Op::Var(_) | Op::Pi | Op::Entire | Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Min
-            | Op::Max | Op::Mod | Op::Hypot | Op::Pow | Op::Atan2 | Op::Less | Op::LessEqual | Op::Equal
-            | Op::Select | Op::Kink | Op::SelectJump => unreachable!("{} is not unary", op.name()),
+            Op::Const(_)
+            | Op::Var(_)
+            | Op::Pi
+            | Op::Entire
+            | Op::Add
+            | Op::Sub
+            | Op::Mul
+            | Op::Div
+            | Op::Min
+            | Op::Max
+            | Op::Mod
+            | Op::Hypot
+            | Op::Pow
+            | Op::Atan2
+            | Op::Less
+            | Op::LessEqual
+            | Op::Equal
+            | Op::Select
+            | Op::Kink
+            | Op::SelectJump => unreachable!("{} is not unary", op.name()),
         };
         self.product(factor, du)
     }

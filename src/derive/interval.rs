@@ -170,8 +170,14 @@ impl Lowering<'_> {
         let upper = b.up(hi);
         let negated_lower = b.up(-lo);
         // Inside must hold for the range itself, so its ends are rounded inward there.
-        let inner_upper = { let down = b.up(-hi); b.neg(down) };
-        let inner_negated_lower = { let down = b.up(lo); b.neg(down) };
+        let inner_upper = {
+            let down = b.up(-hi);
+            b.neg(down)
+        };
+        let inner_negated_lower = {
+            let down = b.up(lo);
+            b.neg(down)
+        };
         let lower_side = b.less_equal(form.ends.nlo, inner_negated_lower);
         let upper_side = b.less_equal(form.ends.hi, inner_upper);
         let inside = b.and(lower_side, upper_side);
@@ -296,9 +302,30 @@ impl Lowering<'_> {
                 let ends = b.truth_ends(proved, refuted);
                 return (Applied { ends, empty: Mask::False, continuous: decided }, Sign::NonNegative);
             }
-            Op::PowRatio(..) | Op::Cbrt | Op::Exp | Op::Exp2 | Op::Exp10 | Op::Expm1 | Op::Ln | Op::Log1p | Op::Log2
-            | Op::Log10 | Op::Sin | Op::Cos | Op::Tan | Op::Asin | Op::Acos | Op::Atan | Op::Sinh | Op::Cosh
-            | Op::Tanh | Op::Asinh | Op::Acosh | Op::Atanh | Op::Pow | Op::Atan2 => {
+            Op::PowRatio(..)
+            | Op::Cbrt
+            | Op::Exp
+            | Op::Exp2
+            | Op::Exp10
+            | Op::Expm1
+            | Op::Ln
+            | Op::Log1p
+            | Op::Log2
+            | Op::Log10
+            | Op::Sin
+            | Op::Cos
+            | Op::Tan
+            | Op::Asin
+            | Op::Acos
+            | Op::Atan
+            | Op::Sinh
+            | Op::Cosh
+            | Op::Tanh
+            | Op::Asinh
+            | Op::Acosh
+            | Op::Atanh
+            | Op::Pow
+            | Op::Atan2 => {
                 let all: Vec<Ends> = operands.iter().map(|form| form.ends).collect();
                 elementary::apply(b, node.op, &all)
             }

@@ -103,12 +103,34 @@ impl LaneOp {
         use LaneOp::*;
         let (a, b, c) = match self {
             Input(_) | Uniform(_) | Const(_) | Bits(_) => (None, None, None),
-            Sqrt(a) | Neg(a) | Abs(a) | Floor(a) | Ceil(a) | Trunc(a) | Nearest(a) | MaskNot(a) | ToBits(a)
-            | FromBits(a) | MaskBits(a) | ShiftLeft(a, _) | ShiftRight(a, _) => (Some(a), None, None),
-            Add(a, b) | Sub(a, b) | Mul(a, b) | Div(a, b) | Min(a, b) | Max(a, b) | Less(a, b) | LessEqual(a, b)
-            | Equal(a, b) | MaskAnd(a, b) | MaskOr(a, b) | BitAnd(a, b) | BitOr(a, b) | IntAdd(a, b) | IntSub(a, b) => {
-                (Some(a), Some(b), None)
-            }
+            Sqrt(a)
+            | Neg(a)
+            | Abs(a)
+            | Floor(a)
+            | Ceil(a)
+            | Trunc(a)
+            | Nearest(a)
+            | MaskNot(a)
+            | ToBits(a)
+            | FromBits(a)
+            | MaskBits(a)
+            | ShiftLeft(a, _)
+            | ShiftRight(a, _) => (Some(a), None, None),
+            Add(a, b)
+            | Sub(a, b)
+            | Mul(a, b)
+            | Div(a, b)
+            | Min(a, b)
+            | Max(a, b)
+            | Less(a, b)
+            | LessEqual(a, b)
+            | Equal(a, b)
+            | MaskAnd(a, b)
+            | MaskOr(a, b)
+            | BitAnd(a, b)
+            | BitOr(a, b)
+            | IntAdd(a, b)
+            | IntSub(a, b) => (Some(a), Some(b), None),
             Fma(a, b, c) | Select(a, b, c) => (Some(a), Some(b), Some(c)),
         };
         [a, b, c].into_iter().flatten()

@@ -43,10 +43,22 @@ pub fn bounds(spec: &Spec, real: &[Decorated], precision: Precision) -> Vec<f64>
             Op::Exp => at(0).exp() * 2.0,
             Op::Exp2 => at(0).exp2() * 2.0,
             Op::Sinh | Op::Cosh | Op::Expm1 => at(0).exp() * 2.0 + 1.0,
-            Op::PowInt(_) | Op::PowRatio(..) | Op::Cbrt | Op::Exp10 | Op::Ln | Op::Log1p | Op::Log2 | Op::Log10
-            | Op::Tan | Op::Asinh | Op::Acosh | Op::Atanh | Op::Div | Op::Pow | Op::SelectJump | Op::Entire => {
-                f64::INFINITY
-            }
+            Op::PowInt(_)
+            | Op::PowRatio(..)
+            | Op::Cbrt
+            | Op::Exp10
+            | Op::Ln
+            | Op::Log1p
+            | Op::Log2
+            | Op::Log10
+            | Op::Tan
+            | Op::Asinh
+            | Op::Acosh
+            | Op::Atanh
+            | Op::Div
+            | Op::Pow
+            | Op::SelectJump
+            | Op::Entire => f64::INFINITY,
         };
         // A clipped value is as large as its range, whatever computes it.
         let clipped = spec.domain.iter().filter(|(v, _)| *v == value).map(|(_, range)| range.mag());

@@ -1,0 +1,272 @@
+//! Lane programs to CLIF: one instruction pattern per lane operation, in a loop over the vectors of a packet.
+//!
+//! Cranelift's optimiser folds scalar float constants to nearest, which is unsound under another rounding mode; here
+//! every constant is a vector constant and the optimiser is off. Floating-point operations are pure to Cranelift, so the
+//! mode must not change inside a function: it is set around the call (`rounding`).
+
+use cranelift_codegen::Context;
+use cranelift_codegen::ir::AbiParam;
+use cranelift_codegen::ir::ConstantData;
+use cranelift_codegen::ir::InstBuilder;
+use cranelift_codegen::ir::MemFlagsData;
+use cranelift_codegen::ir::Signature;
+use cranelift_codegen::ir::Type;
+use cranelift_codegen::ir::Value;
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::types;
+use cranelift_codegen::isa::CallConv;
+use cranelift_codegen::isa::OwnedTargetIsa;
+use cranelift_codegen::settings;
+use cranelift_codegen::settings::Configurable;
+use cranelift_frontend::FunctionBuilder;
+use cranelift_frontend::FunctionBuilderContext;
+
+use crate::derive::LaneProgram;
+use crate::derive::Precision;
+use crate::derive::lanes::Kind;
+use crate::derive::lanes::Lane;
+use crate::derive::lanes::LaneOp;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
+
+/// Bytes of one slot of one packet (see `kernel::Packet`), and of one vector register.
+const PACKET: i64 = 64;
+const VECTOR: i64 = 16;
+
+/// Above this many values live at once, the allocator that is linear in the program's length takes over: the other
+/// one gives code twice as fast, but its time grows with the square of the live values.
+const LIVE_LIMIT: usize = 600;
+
+/// The text of a compiled program.
+pub struct Emitted {
+    pub clif: String,
+    pub assembly: String,
+}
+
+/// Compiles a program and gives its text.
+pub fn emit(program: &LaneProgram) -> Result<Emitted, Diagnostic> {
+    let isa = isa(program)?;
+    let mut context = Context::new();
+    context.set_disasm(true);
+    function(program, isa.frontend_config(), &mut context);
+    let clif = context.func.display().to_string();
+    let code = context.compile(&*isa, &mut Default::default()).map_err(|error| internal(&error.inner))?;
+    Ok(Emitted { clif, assembly: code.vcode.clone().unwrap_or_default() })
+}
+
+/// What went wrong in Cranelift is our mistake, whatever the formula.
+pub fn internal(error: &dyn std::fmt::Display) -> Diagnostic {
+    Diagnostic::error(code::INTERNAL, format!("the code generator failed: {error}"))
+}
+
+/// The host's instruction set with the settings of this program.
+pub fn isa(program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
+    let allocator = if most_live(program) > LIVE_LIMIT { "single_pass" } else { "backtracking" };
+    let mut flags = settings::builder();
+    let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
+    for (name, value) in [
+        ("opt_level", "none"),
+        ("regalloc_algorithm", allocator),
+        ("enable_verifier", verifier),
+        ("is_pic", "false"),
+        ("use_colocated_libcalls", "false"),
+    ] {
+        flags.set(name, value).map_err(|error| internal(&error))?;
+    }
+    let host = cranelift_native::builder().map_err(|error| internal(&error))?;
+    host.finish(settings::Flags::new(flags)).map_err(|error| internal(&error))
+}
+
+/// The most lane values that are live at one point.
+fn most_live(program: &LaneProgram) -> usize {
+    let mut last_use: Vec<usize> = (0..program.ops.len()).collect();
+    for (i, op) in program.ops.iter().enumerate() {
+        op.operands().for_each(|operand| last_use[operand.index()] = i);
+    }
+    for output in &program.outputs {
+        last_use[output.index()] = program.ops.len();
+    }
+    let mut ends = vec![0usize; program.ops.len() + 1];
+    let (mut live, mut most) = (0, 0);
+    for (i, op) in program.ops.iter().enumerate() {
+        // Constants and inputs are loaded where they are used.
+        if !matches!(op, LaneOp::Const(_) | LaneOp::Bits(_) | LaneOp::Input(_) | LaneOp::Uniform(_)) {
+            live += 1;
+            ends[last_use[i]] += 1;
+        }
+        live -= ends[i].min(live);
+        most = most.max(live);
+    }
+    most
+}
+
+/// The kernel's signature: inputs, outputs, uniforms, groups.
+pub fn signature() -> Signature {
+    let mut signature = Signature::new(CallConv::SystemV);
+    signature.params = vec![AbiParam::new(types::I64); 4];
+    signature
+}
+
+/// Fills `context` with the kernel of a program.
+pub fn function(program: &LaneProgram, config: cranelift_codegen::isa::TargetFrontendConfig, context: &mut Context) {
+    context.func.signature = signature();
+    let mut builder_context = FunctionBuilderContext::new();
+    let mut b = FunctionBuilder::new(&mut context.func, &mut builder_context);
+    let entry = b.create_block();
+    let body = b.create_block();
+    let next_group = b.create_block();
+    let exit = b.create_block();
+    b.append_block_params_for_function_params(entry);
+    b.switch_to_block(entry);
+    let [inputs, outputs, uniforms, groups] = std::array::from_fn(|i| b.block_params(entry)[i]);
+    let zero = b.ins().iconst(types::I64, 0);
+    // body(inputs, outputs, groups left, bytes done in the packet)
+    for _ in 0..4 {
+        b.append_block_param(body, types::I64);
+    }
+    let [inputs_now, outputs_now, left, done] = std::array::from_fn(|i| b.block_params(body)[i]);
+    let start = [inputs.into(), outputs.into(), groups.into(), zero.into()];
+    b.ins().brif(groups, body, &start, exit, &[]);
+
+    b.switch_to_block(body);
+    let mut emitter = Emitter {
+        b: &mut b,
+        number: if program.precision == Precision::Single { types::F32X4 } else { types::F64X2 },
+        word: if program.precision == Precision::Single { types::I32X4 } else { types::I64X2 },
+        scalar: if program.precision == Precision::Single { types::F32 } else { types::F64 },
+        inputs: inputs_now,
+        uniforms,
+        values: Vec::with_capacity(program.ops.len()),
+        program,
+    };
+    for op in &program.ops {
+        let value = emitter.op(*op);
+        emitter.values.push(value);
+    }
+    for (slot, output) in program.outputs.iter().enumerate() {
+        let value = emitter.values[output.index()];
+        emitter.b.ins().store(MemFlagsData::trusted(), value, outputs_now, slot as i32 * PACKET as i32);
+    }
+    let done = b.ins().iadd_imm_s(done, VECTOR);
+    let inputs_next = b.ins().iadd_imm_s(inputs_now, VECTOR);
+    let outputs_next = b.ins().iadd_imm_s(outputs_now, VECTOR);
+    let more = b.ins().icmp_imm_s(IntCC::NotEqual, done, PACKET);
+    let again = [inputs_next.into(), outputs_next.into(), left.into(), done.into()];
+    b.ins().brif(more, body, &again, next_group, &[]);
+
+    b.switch_to_block(next_group);
+    let inputs_next = b.ins().iadd_imm_s(inputs_next, PACKET * (program.input_slots as i64 - 1));
+    let outputs_next = b.ins().iadd_imm_s(outputs_next, PACKET * (program.outputs.len() as i64 - 1));
+    let left = b.ins().iadd_imm_s(left, -1);
+    let again = [inputs_next.into(), outputs_next.into(), left.into(), zero.into()];
+    b.ins().brif(left, body, &again, exit, &[]);
+
+    b.switch_to_block(exit);
+    b.ins().return_(&[]);
+    b.seal_all_blocks();
+    b.finalize(config);
+}
+
+struct Emitter<'a, 'f> {
+    b: &'a mut FunctionBuilder<'f>,
+    /// Vector types of numbers and of words (masks and bits), and the number's lane type.
+    number: Type,
+    word: Type,
+    scalar: Type,
+    inputs: Value,
+    uniforms: Value,
+    values: Vec<Value>,
+    program: &'a LaneProgram,
+}
+
+impl Emitter<'_, '_> {
+    fn at(&self, lane: Lane) -> Value {
+        self.values[lane.index()]
+    }
+
+    fn op(&mut self, op: LaneOp) -> Value {
+        use LaneOp::*;
+        match op {
+            Input(slot) => {
+                let offset = slot as i32 * PACKET as i32;
+                self.b.ins().load(self.number, MemFlagsData::trusted(), self.inputs, offset)
+            }
+            Uniform(slot) => {
+                let offset = slot as i32 * self.scalar.bytes() as i32;
+                let number = self.b.ins().load(self.scalar, MemFlagsData::trusted(), self.uniforms, offset);
+                self.b.ins().splat(self.number, number)
+            }
+            Const(bits) => self.constant(self.number, bits),
+            Bits(bits) => self.constant(self.word, bits),
+            Add(x, y) => self.b.ins().fadd(self.values[x.index()], self.values[y.index()]),
+            Sub(x, y) => self.b.ins().fsub(self.values[x.index()], self.values[y.index()]),
+            Mul(x, y) => self.b.ins().fmul(self.values[x.index()], self.values[y.index()]),
+            Div(x, y) => self.b.ins().fdiv(self.values[x.index()], self.values[y.index()]),
+            Sqrt(x) => self.b.ins().sqrt(self.values[x.index()]),
+            Fma(x, y, z) => self.b.ins().fma(self.values[x.index()], self.values[y.index()], self.values[z.index()]),
+            Neg(x) => {
+                let sign = self.constant(self.number, self.sign_bit());
+                self.b.ins().bxor(self.values[x.index()], sign)
+            }
+            Abs(x) => {
+                let rest = self.constant(self.number, self.sign_bit() - 1);
+                self.b.ins().band(self.values[x.index()], rest)
+            }
+            // The two patterns that lower to one minps or maxps: second operand where either is NaN.
+            Min(x, y) => self.pick(FloatCC::LessThan, (x, y), (x, y)),
+            Max(x, y) => self.pick(FloatCC::LessThan, (y, x), (x, y)),
+            Floor(x) => self.b.ins().floor(self.values[x.index()]),
+            Ceil(x) => self.b.ins().ceil(self.values[x.index()]),
+            Trunc(x) => self.b.ins().trunc(self.values[x.index()]),
+            Nearest(x) => self.b.ins().nearest(self.values[x.index()]),
+            Less(x, y) => self.compare(FloatCC::LessThan, x, y),
+            LessEqual(x, y) => self.compare(FloatCC::LessThanOrEqual, x, y),
+            Equal(x, y) => self.compare(FloatCC::Equal, x, y),
+            MaskAnd(x, y) | BitAnd(x, y) => self.b.ins().band(self.values[x.index()], self.values[y.index()]),
+            MaskOr(x, y) | BitOr(x, y) => self.b.ins().bor(self.values[x.index()], self.values[y.index()]),
+            MaskNot(x) => {
+                let ones = self.constant(self.word, u64::MAX);
+                self.b.ins().bxor(self.values[x.index()], ones)
+            }
+            Select(mask, x, y) => {
+                debug_assert_eq!(self.program.ops[mask.index()].kind(), Kind::Mask);
+                let mask = self.cast(self.number, self.at(mask));
+                self.b.ins().bitselect(mask, self.values[x.index()], self.values[y.index()])
+            }
+            ToBits(x) => self.cast(self.word, self.at(x)),
+            FromBits(x) => self.cast(self.number, self.at(x)),
+            MaskBits(x) => self.at(x),
+            IntAdd(x, y) => self.b.ins().iadd(self.values[x.index()], self.values[y.index()]),
+            IntSub(x, y) => self.b.ins().isub(self.values[x.index()], self.values[y.index()]),
+            ShiftLeft(x, n) => self.b.ins().ishl_imm(self.values[x.index()], i64::from(n)),
+            ShiftRight(x, n) => self.b.ins().ushr_imm(self.values[x.index()], i64::from(n)),
+        }
+    }
+
+    fn sign_bit(&self) -> u64 {
+        1 << (self.scalar.bits() - 1)
+    }
+
+    /// The low bits of `lane` in every lane.
+    fn constant(&mut self, ty: Type, lane: u64) -> Value {
+        let bytes = &lane.to_le_bytes()[..self.scalar.bytes() as usize];
+        let vector: Vec<u8> = bytes.repeat(VECTOR as usize / bytes.len());
+        let handle = self.b.func.dfg.constants.insert(ConstantData::from(vector));
+        self.b.ins().vconst(ty, handle)
+    }
+
+    fn cast(&mut self, ty: Type, value: Value) -> Value {
+        self.b.ins().bitcast(ty, MemFlagsData::new(), value)
+    }
+
+    fn compare(&mut self, condition: FloatCC, x: Lane, y: Lane) -> Value {
+        self.b.ins().fcmp(condition, self.values[x.index()], self.values[y.index()])
+    }
+
+    fn pick(&mut self, condition: FloatCC, (p, q): (Lane, Lane), (x, y): (Lane, Lane)) -> Value {
+        let holds = self.compare(condition, p, q);
+        let mask = self.cast(self.number, holds);
+        self.b.ins().bitselect(mask, self.values[x.index()], self.values[y.index()])
+    }
+}

@@ -1,0 +1,123 @@
+//! Compiled kernels in memory: who owns the code, and the one place where it is called.
+
+use std::marker::PhantomData;
+use std::mem::ManuallyDrop;
+
+use cranelift_jit::JITBuilder;
+use cranelift_jit::JITModule;
+use cranelift_module::Linkage;
+use cranelift_module::Module;
+use cranelift_module::default_libcall_names;
+
+use crate::codegen::emit;
+use crate::codegen::rounding;
+use crate::derive::LaneProgram;
+use crate::derive::Precision;
+use crate::derive::Rounding;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
+use crate::kernel::Kernel;
+use crate::kernel::Packet;
+use crate::kernel::Real;
+
+/// The precision that belongs to a Rust type.
+pub trait Format: Real {
+    const PRECISION: Precision;
+}
+
+impl Format for f32 {
+    const PRECISION: Precision = Precision::Single;
+}
+
+impl Format for f64 {
+    const PRECISION: Precision = Precision::Double;
+}
+
+/// A kernel that owns its machine code. Cranelift never makes a page writable and executable at once.
+pub struct JitKernel<T> {
+    entry: rounding::Entry,
+    rounding: Rounding,
+    input_slots: usize,
+    output_slots: usize,
+    uniform_slots: usize,
+    module: ManuallyDrop<JITModule>,
+    format: PhantomData<T>,
+}
+
+// SAFETY: after construction the module is touched only by `drop`; the code is immutable and keeps no state.
+unsafe impl<T> Sync for JitKernel<T> {}
+
+impl<T: Format> JitKernel<T> {
+    pub fn new(program: &LaneProgram, rounding: Rounding) -> Result<Self, Diagnostic> {
+        assert_eq!(program.precision, T::PRECISION);
+        if !rounding::available() {
+            let title = "this machine has no AVX and FMA instructions, which compiled kernels need";
+            return Err(Diagnostic::error(code::UNSUPPORTED, title));
+        }
+        let isa = emit::isa(program)?;
+        let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));
+        match define(&mut module, program) {
+            Ok(entry) => Ok(Self {
+                entry,
+                rounding,
+                input_slots: program.input_slots,
+                output_slots: program.outputs.len(),
+                uniform_slots: program.uniform_slots,
+                module: ManuallyDrop::new(module),
+                format: PhantomData,
+            }),
+            Err(error) => {
+                // SAFETY: no entry was handed out.
+                unsafe { module.free_memory() };
+                Err(error)
+            }
+        }
+    }
+}
+
+fn define(module: &mut JITModule, program: &LaneProgram) -> Result<rounding::Entry, Diagnostic> {
+    let id = module
+        .declare_function("kernel", Linkage::Local, &emit::signature())
+        .map_err(|error| emit::internal(&error))?;
+    let mut context = module.make_context();
+    emit::function(program, module.target_config(), &mut context);
+    module.define_function(id, &mut context).map_err(|error| emit::internal(&error))?;
+    module.finalize_definitions().map_err(|error| emit::internal(&error))?;
+    let code = module.get_finalized_function(id);
+    // SAFETY: the function was compiled with exactly this signature and calling convention.
+    Ok(unsafe { std::mem::transmute::<*const u8, rounding::Entry>(code) })
+}
+
+impl<T: Format> Kernel<T> for JitKernel<T> {
+    fn input_slots(&self) -> usize {
+        self.input_slots
+    }
+
+    fn output_slots(&self) -> usize {
+        self.output_slots
+    }
+
+    fn run(&self, uniforms: &[T], inputs: &[Packet<T>], outputs: &mut [Packet<T>]) {
+        let groups = inputs.len() / self.input_slots.max(1);
+        assert_eq!(inputs.len(), groups * self.input_slots, "the inputs are no whole number of groups");
+        assert_eq!(outputs.len(), groups * self.output_slots, "the outputs do not match the inputs");
+        assert_eq!(uniforms.len(), self.uniform_slots, "the uniforms do not match the spec");
+        let (inputs, outputs, uniforms) =
+            (inputs.as_ptr().cast::<u8>(), outputs.as_mut_ptr().cast::<u8>(), uniforms.as_ptr().cast::<u8>());
+        // SAFETY: the lengths were checked; packets are 64 bytes, aligned to 64, as the code assumes; `entry` lives as
+        // long as `self`, which this call borrows.
+        unsafe {
+            match self.rounding {
+                Rounding::Outward => rounding::call_upward(self.entry, inputs, outputs, uniforms, groups),
+                Rounding::Nearest => (self.entry)(inputs, outputs, uniforms, groups),
+            }
+        }
+    }
+}
+
+impl<T> Drop for JitKernel<T> {
+    fn drop(&mut self) {
+        // SAFETY: `entry` is private and every call borrows `self`, so none is running; the module is not used again.
+        unsafe { ManuallyDrop::take(&mut self.module).free_memory() }
+    }
+}
