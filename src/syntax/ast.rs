@@ -73,7 +73,10 @@ pub enum ExprKind {
     /// `[a, b, c]`
     List(Vec<Expr>),
     /// `name(args)`: a call, a field at a point, or a product.
-    Apply { callee: Name, args: Vec<Argument> },
+    Apply {
+        callee: Name,
+        args: Vec<Argument>,
+    },
     /// `|e|`
     Bars(Box<Expr>),
     /// `(e)`; kept so that the formatter gives back what was written.
@@ -81,16 +84,32 @@ pub enum ExprKind {
     Neg(Box<Expr>),
     Not(Box<Expr>),
     /// A flat sum: first term, then signed terms. Long sums must not nest.
-    Sum { first: Box<Expr>, rest: Vec<(Sign, Expr)> },
+    Sum {
+        first: Box<Expr>,
+        rest: Vec<(Sign, Expr)>,
+    },
     /// A flat product: first factor, then factors with how each was joined.
-    Product { first: Box<Expr>, rest: Vec<(Join, Expr)> },
-    Power { base: Box<Expr>, exponent: Box<Expr> },
+    Product {
+        first: Box<Expr>,
+        rest: Vec<(Join, Expr)>,
+    },
+    Power {
+        base: Box<Expr>,
+        exponent: Box<Expr>,
+    },
     /// `a < b <= c`, `a = b`: operands and the relations between them (one fewer).
-    Relation { operands: Vec<Expr>, relations: Vec<Relation> },
+    Relation {
+        operands: Vec<Expr>,
+        relations: Vec<Relation>,
+    },
     /// Flat conjunction or disjunction.
     And(Vec<Expr>),
     Or(Vec<Expr>),
-    If { condition: Box<Expr>, then: Box<Expr>, otherwise: Box<Expr> },
+    If {
+        condition: Box<Expr>,
+        then: Box<Expr>,
+        otherwise: Box<Expr>,
+    },
 }
 
 #[derive(Debug, Clone)]
