@@ -114,8 +114,8 @@ pub(super) fn hypot(x: f64, y: f64) -> (f64, f64) {
 /// Significands of more bits than this are not raised: the bounds come from an estimate instead.
 const POWER_BITS: u64 = 1 << 13;
 
-/// Bounds (down, up) of `x^(p/q)` for finite `x > 0`, if `x^p` and the `q`-th power of the result are small enough to be
-/// written out. `guess` is near the result and not negative.
+/// Bounds (down, up) of `x^(p/q)` for finite `x > 0`, if `x^p` and the `q`-th power of the result are small enough to
+/// be written out. `guess` is near the result and not negative.
 pub(super) fn power(x: f64, p: i32, q: u32, guess: f64) -> Option<(f64, f64)> {
     let x = Dyadic::new(x);
     let result_bits = 53;

@@ -1,21 +1,31 @@
 //! Interval arithmetic in `f64`, set-based in the sense of IEEE 1788: the reference of everything that Imp proves.
 //!
 //! An [`Interval`] is a closed connected set of real numbers. An operation returns an enclosure of all values that the
-//! function takes on the part of the argument that lies in its domain; bounds of the four operations, of roots and of
-//! small powers are the tightest that `f64` has, those of elementary functions are at most two units in the last
-//! place wide of them.
+//! function takes on the part of the argument that lies in its domain. Bounds of arithmetic, of roots and of small
+//! rational powers are the tightest that `f64` has; those of elementary functions are at most two units in the last
+//! place away from the values, on each side.
 //!
 //! - [`round`]: directed rounding;
 //! - [`Interval`] and its operations, in one file per group;
 //! - [`Verdict`]: answers to questions about sets;
+//! - [`Decorated`]: an interval with what is known about the function on its way there;
+//! - [`Affine`]: affine forms with a bounded number of noise symbols.
 
+mod affine;
 mod arith;
+mod decoration;
+mod elementary;
 mod exact;
+mod integer;
+mod power;
 pub mod round;
 mod set_ops;
 mod text;
+mod trigonometric;
 mod verdict;
 
+pub use affine::Affine;
+pub use decoration::{Decorated, Decoration};
 pub use text::decimal;
 pub use verdict::Verdict;
 

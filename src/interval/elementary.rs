@@ -1,0 +1,180 @@
+//! Exponential, logarithmic, hyperbolic and inverse functions.
+//!
+//! CORE-MATH (Sibidanov, Zimmermann, Glondu, 2022) returns the `f64` nearest to the real value, so the value lies
+//! between that number's two neighbours. Where the value is known to be a `f64` itself, the bound stays exact.
+
+use super::Interval;
+
+impl Interval {
+    /// The values of a function that never decreases on this part of its domain. `nearest` is correctly rounded,
+    /// limits at infinite bounds included; `exact` tells for which arguments it is the value itself.
+    fn increasing(self, nearest: impl Fn(f64) -> f64, exact: impl Fn(f64) -> bool) -> Self {
+        if self.is_empty() {
+            return self;
+        }
+        let (lo, hi) = (nearest(self.lo), nearest(self.hi));
+        Self::raw(if exact(self.lo) { lo } else { lo.next_down() }, if exact(self.hi) { hi } else { hi.next_up() })
+    }
+
+    /// e^x.
+    pub fn exp(self) -> Self {
+        self.increasing(core_math::exp, is_zero).intersect(Self::NONNEGATIVE)
+    }
+
+    /// 2^x.
+    pub fn exp2(self) -> Self {
+        // Whole powers in the range of f64, subnormals included.
+        let exact = |x: f64| x.fract() == 0.0 && (-1074.0..=1023.0).contains(&x);
+        self.increasing(core_math::exp2, exact).intersect(Self::NONNEGATIVE)
+    }
+
+    /// 10^x.
+    pub fn exp10(self) -> Self {
+        // 10^22 = 2^22 5^22 and 5^22 < 2^53 < 5^23.
+        let exact = |x: f64| x.fract() == 0.0 && (0.0..=22.0).contains(&x);
+        self.increasing(core_math::exp10, exact).intersect(Self::NONNEGATIVE)
+    }
+
+    /// e^x - 1.
+    pub fn expm1(self) -> Self {
+        self.increasing(core_math::expm1, is_zero).intersect(Self { lo: -1.0, hi: f64::INFINITY })
+    }
+
+    /// The natural logarithm of the positive members.
+    pub fn ln(self) -> Self {
+        self.logarithm(0.0, core_math::log, |x| x == 1.0)
+    }
+
+    /// The binary logarithm of the positive members.
+    pub fn log2(self) -> Self {
+        self.logarithm(0.0, core_math::log2, is_power_of_two)
+    }
+
+    /// The decimal logarithm of the positive members.
+    pub fn log10(self) -> Self {
+        // The powers of ten that are f64s: x = 10^k, as exp10 returns them.
+        let exact = |x: f64| {
+            let k = core_math::log10(x);
+            (0.0..=22.0).contains(&k) && k.fract() == 0.0 && core_math::exp10(k) == x
+        };
+        self.logarithm(0.0, core_math::log10, exact)
+    }
+
+    /// ln(1 + x) of the members greater than -1.
+    pub fn log1p(self) -> Self {
+        self.logarithm(-1.0, core_math::log1p, is_zero)
+    }
+
+    /// An increasing function whose domain is the reals above `pole`, where it goes to -inf.
+    fn logarithm(self, pole: f64, nearest: impl Fn(f64) -> f64, exact: impl Fn(f64) -> bool) -> Self {
+        if self.is_empty() || self.hi <= pole {
+            return Self::EMPTY;
+        }
+        let at = |x: f64| if x == pole { f64::NEG_INFINITY } else { nearest(x) };
+        self.intersect(Self { lo: pole, hi: f64::INFINITY }).increasing(at, exact)
+    }
+
+    /// arcsin x, of the members in [-1, 1].
+    pub fn asin(self) -> Self {
+        self.intersect(Self { lo: -1.0, hi: 1.0 }).increasing(core_math::asin, is_zero)
+    }
+
+    /// arccos x, of the members in [-1, 1].
+    pub fn acos(self) -> Self {
+        // Decreasing: -acos increases.
+        let x = self.intersect(Self { lo: -1.0, hi: 1.0 });
+        -x.increasing(|x| -core_math::acos(x), |x| x == 1.0)
+    }
+
+    /// arctan x.
+    pub fn atan(self) -> Self {
+        self.increasing(core_math::atan, is_zero).intersect(Self { lo: -Self::HALF_PI.hi, hi: Self::HALF_PI.hi })
+    }
+
+    /// The angle of the point (x, y) = (`x`, `self`) in (-pi, pi], as IEEE 1788 has it: the origin is outside the
+    /// domain, and the negative x axis has the angle pi.
+    pub fn atan2(self, x: Self) -> Self {
+        let y = self;
+        if x.is_empty() || y.is_empty() || x == Self::ZERO && y == Self::ZERO {
+            return Self::EMPTY;
+        }
+        if y.lo < 0.0 {
+            return if y.hi < 0.0 || y.hi == 0.0 && x.lo >= 0.0 {
+                // The lower half plane mirrors the upper one away from the branch cut.
+                -(-y).atan2(x)
+            } else if x.lo < 0.0 {
+                // Both sides of the branch cut.
+                Self { lo: -Self::PI.hi, hi: Self::PI.hi }
+            } else {
+                // The right half plane: the angle increases with y; at a negative y it increases with x, at a positive
+                // one it decreases.
+                Self::raw(angle(y.lo, x.lo).0, angle(y.hi, x.lo).1)
+            };
+        }
+        if y == Self::ZERO {
+            // On the axis, where the origin cannot stand for a limit.
+            let least = if x.hi > 0.0 { 0.0 } else { Self::PI.lo };
+            return Self { lo: least, hi: if x.lo < 0.0 { Self::PI.hi } else { 0.0 } };
+        }
+        // The upper half plane: the angle decreases with x; it increases with y for x > 0, and decreases for x < 0.
+        let (first, last) = (if x.hi > 0.0 { y.lo } else { y.hi }, if x.lo < 0.0 { y.lo } else { y.hi });
+        Self::raw(angle(first, x.hi).0, angle(last, x.lo).1)
+    }
+
+    /// The hyperbolic sine.
+    pub fn sinh(self) -> Self {
+        self.increasing(core_math::sinh, is_zero)
+    }
+
+    /// The hyperbolic cosine.
+    pub fn cosh(self) -> Self {
+        self.abs().increasing(core_math::cosh, is_zero).intersect(Self { lo: 1.0, hi: f64::INFINITY })
+    }
+
+    /// The hyperbolic tangent.
+    pub fn tanh(self) -> Self {
+        self.increasing(core_math::tanh, is_zero).intersect(Self { lo: -1.0, hi: 1.0 })
+    }
+
+    /// The inverse hyperbolic sine.
+    pub fn asinh(self) -> Self {
+        self.increasing(core_math::asinh, is_zero)
+    }
+
+    /// The inverse hyperbolic cosine of the members in [1, inf].
+    pub fn acosh(self) -> Self {
+        self.intersect(Self { lo: 1.0, hi: f64::INFINITY }).increasing(core_math::acosh, |x| x == 1.0)
+    }
+
+    /// The inverse hyperbolic tangent of the members in (-1, 1).
+    pub fn atanh(self) -> Self {
+        if self.is_empty() || self.hi <= -1.0 || self.lo >= 1.0 {
+            return Self::EMPTY;
+        }
+        let at = |x: f64| if x.abs() == 1.0 { x * f64::INFINITY } else { core_math::atanh(x) };
+        self.intersect(Self { lo: -1.0, hi: 1.0 }).increasing(at, is_zero)
+    }
+}
+
+fn is_zero(x: f64) -> bool {
+    x == 0.0
+}
+
+/// Whether `x` > 0 is a power of two: one bit in the fraction of a subnormal, none in that of a normal number.
+fn is_power_of_two(x: f64) -> bool {
+    let fraction = x.to_bits() & ((1 << 52) - 1);
+    if x.is_subnormal() { fraction.is_power_of_two() } else { x.is_finite() && fraction == 0 }
+}
+
+/// Bounds of the angle of (x, y), not the origin; at most one of the two is infinite. A zero y on the negative axis
+/// means pi.
+fn angle(y: f64, x: f64) -> (f64, f64) {
+    if y == 0.0 {
+        return if x > 0.0 { (0.0, 0.0) } else { (Interval::PI.lo, Interval::PI.hi) };
+    }
+    let nearest = core_math::atan2(y, x);
+    // The value has the sign of y and is below pi in size.
+    let sign =
+        if y > 0.0 { Interval { lo: 0.0, hi: Interval::PI.hi } } else { Interval { lo: -Interval::PI.hi, hi: 0.0 } };
+    (nearest.next_down().max(sign.lo), nearest.next_up().min(sign.hi))
+}

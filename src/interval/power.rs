@@ -1,0 +1,186 @@
+//! Powers. Those with a rational exponent p/q are tight up to |p| or q of 150, and the others within three units in
+//! the last place; an interval as exponent costs two.
+
+use super::{Interval, exact};
+use num_integer::Integer;
+
+impl Interval {
+    /// x^n, with x^0 = 1 everywhere and 0 outside the domain if n < 0.
+    pub fn powi(self, n: i32) -> Self {
+        self.pow_rational(n, 1)
+    }
+
+    /// The real cube root.
+    pub fn cbrt(self) -> Self {
+        self.pow_rational(1, 3)
+    }
+
+    /// x^(p/q) for q >= 1; the fraction need not be reduced. With p/q in lowest terms, an odd q takes the real root,
+    /// so that all x are in the domain, and an even q only x >= 0. A negative p takes 0 out of the domain. Empty if q
+    /// = 0.
+    pub fn pow_rational(self, p: i32, q: u32) -> Self {
+        if self.is_empty() || q == 0 {
+            return Self::EMPTY;
+        }
+        let divisor = q.gcd(&p.unsigned_abs());
+        // |p| / divisor fits an i32 unless p = i32::MIN stays whole, which i64 holds.
+        let (p, q) = ((i64::from(p) / i64::from(divisor)) as i32, q / divisor);
+        let x = if q % 2 == 0 { self.intersect(Self::NONNEGATIVE) } else { self };
+        if x.is_empty() {
+            return Self::EMPTY;
+        }
+        if p == 0 {
+            return Self::ONE;
+        }
+        if x.lo >= 0.0 {
+            return x.pow_nonnegative(p, q);
+        }
+        // q is odd: x^(p/q) has the parity of p.
+        if p % 2 == 0 {
+            return x.abs().pow_nonnegative(p, q);
+        }
+        let (left, right) = (x.intersect(-Self::NONNEGATIVE), x.intersect(Self::NONNEGATIVE));
+        // A negative p has a pole at 0, where the two branches go to opposite infinities; the point 0 adds nothing.
+        (-(-left).pow_nonnegative(p, q)).hull(right.pow_nonnegative(p, q))
+    }
+
+    /// x^(p/q) for a part of [0, inf] that is not empty, p != 0.
+    fn pow_nonnegative(self, p: i32, q: u32) -> Self {
+        if self.is_empty() || p < 0 && self == Self::ZERO {
+            return Self::EMPTY;
+        }
+        let (first, last) = if p > 0 { (self.lo, self.hi) } else { (self.hi, self.lo) };
+        Self::raw(power(first, p, q).0, power(last, p, q).1)
+    }
+
+    /// x^y as IEEE 1788 has it: for x > 0, and for x = 0 where y > 0.
+    pub fn pow(self, y: Self) -> Self {
+        let x = self.intersect(Self::NONNEGATIVE);
+        if x.is_empty() || y.is_empty() {
+            return Self::EMPTY;
+        }
+        if x == Self::ZERO {
+            return if y.hi > 0.0 { Self::ZERO } else { Self::EMPTY };
+        }
+        // x^y = exp(y ln x), and y ln x is bilinear in (y, ln x): the extremes are at corners, where a bound at 0 or
+        // infinity stands for the limit of that product with 0 * inf = 0. A factor 0^y, y > 0 is the limit itself.
+        let mut bounds = (f64::INFINITY, 0.0f64);
+        for (a, b) in [(x.lo, y.lo), (x.lo, y.hi), (x.hi, y.lo), (x.hi, y.hi)] {
+            let corner = power_real(a, b);
+            bounds = (bounds.0.min(corner.0), bounds.1.max(corner.1));
+        }
+        Self::raw(bounds.0, bounds.1)
+    }
+}
+
+/// Bounds (down, up) of `x^(p/q)` for 0 <= x <= inf and p != 0, with the limits at both ends.
+fn power(x: f64, p: i32, q: u32) -> (f64, f64) {
+    if x == 1.0 {
+        return (1.0, 1.0);
+    }
+    if x == 0.0 || x.is_infinite() {
+        let limit = if (x == 0.0) == (p > 0) { 0.0 } else { f64::INFINITY };
+        return (limit, limit);
+    }
+    if q == 1
+        && let Some(bounds) = small_power(x, p)
+    {
+        return bounds;
+    }
+    let (guess, steps) = estimate(x, p, q);
+    exact::power(x, p, q, guess).unwrap_or_else(|| {
+        let (down, up) = exact::widen(guess, steps);
+        (down.max(0.0), up)
+    })
+}
+
+/// Bounds of `x^p` for |p| <= 64, by multiplication in double-double arithmetic; `None` if the bits lost there could
+/// decide the rounding, or if a range is left.
+///
+/// With h + l the running product, |l| <= 2^-53 h, one step computes (h + l) x as RN(h x) + e + RN(l x) with
+/// e = h x - RN(h x) exact, and renormalises exactly by Fast2Sum. Two roundings are lost: that of l x, 2^-53 * 2^-53,
+/// and that of its sum with e, 2^-53 * 2^-52, relative to h x: less than 2^-104 a step, 63 * 2^-104 < 2^-98 in all.
+fn small_power(x: f64, p: i32) -> Option<(f64, f64)> {
+    const LOST: f64 = 1.0 / (1u128 << 97) as f64;
+    let n = p.unsigned_abs();
+    if n > 64 {
+        return None;
+    }
+    let (mut h, mut l, mut exact) = (x, 0.0, p > 0);
+    for _ in 1..n {
+        let product = h * x;
+        let tail = h.mul_add(x, -product) + l * x;
+        h = product + tail;
+        l = tail - (h - product);
+        exact &= tail == 0.0;
+    }
+    // Every partial product lies between x and the last one: none has left the range where errors are exact.
+    if !(1e-280..1e280).contains(&h) || !(1e-280..1e280).contains(&x) {
+        return None;
+    }
+    if exact {
+        return Some((h, h));
+    }
+    if p < 0 {
+        // One Newton step from r = 1/h rounded: with s = 1 - r (h + l), |s| < 2^-51, the reciprocal is r (1 + s + s^2
+        // + ...). The remainder 1 - r h is exact; the roundings of r l, of s and of r s lose less than 2^-103, s^2
+        // less than 2^-102: with the above, less than LOST.
+        let r = 1.0 / h;
+        let step = ((-r).mul_add(h, 1.0) - r * l) * r;
+        h = r + step;
+        l = step - (h - r);
+    }
+    // h is h + l rounded: the power lies on the side of l, and less than a unit away.
+    match l {
+        _ if l.abs() <= LOST * h => None,
+        _ if l > 0.0 => Some((h, h.next_up())),
+        _ => Some((h.next_down(), h)),
+    }
+}
+
+/// A number near `x^(p/q)` for finite x > 0, x != 1, and how many neighbours away at most the real one is.
+fn estimate(x: f64, p: i32, q: u32) -> (f64, u32) {
+    // CORE-MATH rounds correctly: half a unit.
+    match (p, q) {
+        (1, 1) => return (x, 1),
+        (_, 1) => return (core_math::pow(x, f64::from(p)), 1),
+        (1, 2) => return (x.sqrt(), 1),
+        (1, 3) => return (core_math::cbrt(x), 1),
+        _ => {}
+    }
+    // p/q = y + d with y rounded and d = (p - y q)/q, where the remainder is exact. Then x^(p/q) = x^y x^d and
+    // |d ln x| <= 2^-53 |y ln x| < 2^-53 * 746 < 2^-43, as |y ln x| < 746 wherever x^y is neither 0 nor inf. So
+    // x^d = 1 + d ln x up to 2^-87; computed, d ln x is off by 2^-50 of itself, 2^-93. One fused operation applies it.
+    // The error is half a unit of x^y, half a unit of the result and 2^-34 of a unit; a unit of x^y can be two of the
+    // result's if a power of two lies between: 1.5 units and a little.
+    let (p, q) = (f64::from(p), f64::from(q));
+    let y = p / q;
+    let near = core_math::pow(x, y);
+    if near == 0.0 || near.is_infinite() {
+        // Out of range, where the result is too or within a factor 1 - 2^-43 of the threshold: at most 2^-1074, or at
+        // least 2^1024 less some 2^981, which is 2^10 units of 2^971.
+        return (near, if near == 0.0 { 1 } else { 1 << 11 });
+    }
+    let correction = (-y).mul_add(q, p) / q * core_math::log(x);
+    (near.mul_add(correction, near), if correction == 0.0 { 1 } else { 2 })
+}
+
+/// Bounds (down, up) of `exp(y ln x)` for 0 <= x <= inf, -inf <= y <= inf, taken as limits with 0 * inf = 0.
+fn power_real(x: f64, y: f64) -> (f64, f64) {
+    if y == 0.0 || x == 1.0 {
+        return (1.0, 1.0);
+    }
+    if x == 0.0 || x.is_infinite() || y.is_infinite() {
+        let limit = if (x < 1.0) == (y > 0.0) { 0.0 } else { f64::INFINITY };
+        return (limit, limit);
+    }
+    // Exact values need a dyadic exponent of small size: then the exact comparison finds them.
+    for denominator in [1u32, 2, 4, 8, 16, 32] {
+        let numerator = y * f64::from(denominator);
+        if numerator.fract() == 0.0 && numerator.abs() <= 1100.0 {
+            return power(x, numerator as i32, denominator);
+        }
+    }
+    let (down, up) = exact::widen(core_math::pow(x, y), 1);
+    (down.max(0.0), up)
+}
