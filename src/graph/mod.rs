@@ -12,6 +12,7 @@ use std::fmt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
+pub use eval::{apply, enclose};
 pub use op::{AffineForm, Op, Totality};
 pub use text::{ParseError, parse};
 pub use verify::{truths, verify};
