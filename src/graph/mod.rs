@@ -12,7 +12,10 @@ use std::fmt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
+pub use eval::{apply, enclose};
 pub use op::{AffineForm, Op, Totality};
+pub use text::{ParseError, parse};
+pub use verify::{truths, verify};
 
 /// A value of a graph: the index of the node that computes it. Its `Display` is the textual form, `v7`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

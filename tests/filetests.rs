@@ -1,0 +1,61 @@
+//! Tests that are readable files. `tests/filetests/FOLDER/NAME.txt` holds an input, a line `----` and the expected
+//! output; each folder has one function from input to output. With `IMP_BLESS=1` the outputs found are written back.
+
+use std::fs;
+use std::panic::AssertUnwindSafe;
+use std::panic::catch_unwind;
+use std::path::Path;
+
+use imp::graph;
+
+/// Between input and expectation, alone on its line.
+const SEPARATOR: &str = "----\n";
+
+/// Runs every file of a folder, in the order of names, and reports all that differ. A file without expectation fails,
+/// and so does a folder without files.
+fn check(folder: &str, run: fn(&str) -> String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/filetests").join(folder);
+    let bless = std::env::var_os("IMP_BLESS").is_some_and(|value| value == "1");
+    let mut files: Vec<_> = fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|e| e == "txt"));
+    files.sort();
+    assert!(!files.is_empty(), "{} holds no tests", path.display());
+    let mut faults = String::new();
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
+        let (input, expected) = match text.split_once(&format!("\n{SEPARATOR}")) {
+            Some((input, expected)) => (format!("{input}\n"), Some(expected)),
+            None => (format!("{}\n", text.trim_end()), None),
+        };
+        let Ok(mut found) = catch_unwind(AssertUnwindSafe(|| run(&input))) else {
+            faults += &format!("=== {}\npanicked\n", file.display());
+            continue;
+        };
+        if !found.ends_with('\n') {
+            found.push('\n');
+        }
+        if expected == Some(found.as_str()) {
+            continue;
+        }
+        if bless {
+            fs::write(&file, format!("{input}{SEPARATOR}{found}")).unwrap();
+        } else {
+            let expected = expected.unwrap_or("(no expectation)\n");
+            faults += &format!("=== {}\n--- expected\n{expected}--- found\n{found}", file.display());
+        }
+    }
+    assert!(faults.is_empty(), "{faults}Run with IMP_BLESS=1 to accept.");
+}
+
+/// The textual form through the parser: the graph again, or the error.
+fn graph_text(input: &str) -> String {
+    match graph::parse(input) {
+        Ok(graph) => graph.to_string(),
+        Err(error) => format!("error: {error}"),
+    }
+}
+
+#[test]
+fn graph() {
+    check("graph", graph_text);
+}
