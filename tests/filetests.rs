@@ -7,6 +7,9 @@ use std::panic::catch_unwind;
 use std::path::Path;
 
 use imp::graph;
+use imp::graph::Graph;
+use imp::interval::Interval;
+use imp::passes;
 
 /// Between input and expectation, alone on its line.
 const SEPARATOR: &str = "----\n";
@@ -55,7 +58,38 @@ fn graph_text(input: &str) -> String {
     }
 }
 
+/// A graph, and the bounds of its inputs, which are comment lines `# x in [-1, 1/2]`; other inputs are unbounded.
+fn bounded_graph(input: &str) -> (Graph, Vec<Interval>) {
+    let graph = graph::parse(input).unwrap();
+    let bound = |name: &String| {
+        let range = input.lines().find_map(|line| line.strip_prefix(&format!("# {name} in [")))?;
+        let (lo, hi) = range.strip_suffix(']')?.split_once(", ")?;
+        let end = |text: &str| Interval::from_rational(&text.parse().unwrap());
+        Some(end(lo).hull(end(hi)))
+    };
+    let inputs = graph.variables().iter().map(|name| bound(name).unwrap_or(Interval::ENTIRE)).collect();
+    (graph, inputs)
+}
+
+/// The graph after all passes.
+fn rewritten(input: &str) -> String {
+    let (graph, inputs) = bounded_graph(input);
+    passes::run(&graph, &inputs).0.to_string()
+}
+
+/// What each pass did in each round.
+fn rounds(input: &str) -> String {
+    let (graph, inputs) = bounded_graph(input);
+    passes::run(&graph, &inputs).1.iter().map(|report| report.to_string()).collect()
+}
+
 #[test]
 fn graph() {
     check("graph", graph_text);
+}
+
+#[test]
+fn passes() {
+    check("passes", rewritten);
+    check("rounds", rounds);
 }

@@ -62,13 +62,20 @@ pub fn apply(graph: &Graph, node: &Node, operands: &[Decorated]) -> Decorated {
         Op::Hypot => x().hypot(y()),
         Op::Pow => x().pow(y()),
         Op::Atan2 => x().atan2(y()),
-        Op::Less => x().less(y()),
-        Op::LessEqual => x().less_equal(y()),
-        Op::Equal => x().equal(y()),
+        Op::Less => compare(x(), y(), Decorated::less),
+        Op::LessEqual => compare(x(), y(), Decorated::less_equal),
+        Op::Equal => compare(x(), y(), Decorated::equal),
         Op::Select => select(operands, Interval::hull),
         // Across the jump the difference quotient takes any value.
         Op::SelectJump => select(operands, |_, _| Interval::ENTIRE),
     }
+}
+
+/// The truth values of a comparison; none if a side has no value.
+fn compare(x: Decorated, y: Decorated, answer: fn(Decorated, Decorated) -> Decorated) -> Decorated {
+    let truth = answer(x, y);
+    let none = x.interval().is_empty() || y.interval().is_empty();
+    if none { Decorated::with(Interval::EMPTY, truth.decoration()) } else { truth }
 }
 
 /// The arm that the condition decides for, with its value and decoration alone; undecided, `undecided` of both arms, and no

@@ -11,7 +11,6 @@ use num_traits::ToPrimitive;
 use num_traits::Zero;
 
 use super::builder::Builder;
-use super::builder::Shape::Is;
 use super::exact::exact;
 use crate::graph::Op;
 use crate::graph::Value;
@@ -71,7 +70,7 @@ fn sum(g: &mut Builder, x: Value, y: Value) -> Option<Value> {
         return Some(with_constant(g, Op::Add, x, c));
     }
     // (c - x) + d -> (c + d) - x  // as above
-    if let Is(Op::Sub, &[c, x]) = g.shape(x) {
+    if let (Op::Sub, &[c, x]) = g.shape(x) {
         let c = short(g.number(c)? + d)?;
         let c = g.constant(c);
         return Some(g.push(Op::Sub, &[c, x]));
@@ -105,7 +104,7 @@ fn difference(g: &mut Builder, x: Value, y: Value) -> Option<Value> {
         return Some(g.push(Op::Sub, &[c, x]));
     }
     // c - (d - x) -> x + (c - d)  // c - d short
-    if let Is(Op::Sub, &[d, x]) = g.shape(y) {
+    if let (Op::Sub, &[d, x]) = g.shape(y) {
         let c = short(c - g.number(d)?)?;
         return Some(with_constant(g, Op::Add, x, c));
     }
@@ -181,16 +180,16 @@ fn quotient(g: &mut Builder, x: Value, y: Value) -> Option<Value> {
 fn negation(g: &mut Builder, op: Op, x: Value) -> Option<Value> {
     match (op, g.shape(x)) {
         // -(-x) -> x
-        (Op::Neg, Is(Op::Neg, &[x])) => Some(x),
+        (Op::Neg, (Op::Neg, &[x])) => Some(x),
         // -(x - y) -> y - x
-        (Op::Neg, Is(Op::Sub, &[x, y])) => Some(g.push(Op::Sub, &[y, x])),
+        (Op::Neg, (Op::Sub, &[x, y])) => Some(g.push(Op::Sub, &[y, x])),
         // -(c / x) -> (-c) / x
-        (Op::Neg, Is(Op::Div, &[c, x])) => {
+        (Op::Neg, (Op::Div, &[c, x])) => {
             let c = -g.number(c)?;
             let c = g.constant(c);
             Some(g.push(Op::Div, &[c, x]))
         }
-        (Op::Neg, Is(Op::Mul | Op::Add, _)) => {
+        (Op::Neg, (Op::Mul | Op::Add, _)) => {
             // -(x + c) -> (-c) - x
             if let Some((x, c)) = offset(g, x) {
                 let c = -c;
@@ -222,9 +221,9 @@ fn symmetry(g: &mut Builder, op: Op, x: Value) -> Option<Value> {
     };
     match g.shape(x) {
         // f(-x) -> f(x), f(|x|) -> f(x)  // f even
-        Is(Op::Neg | Op::Abs, &[x]) if even => Some(g.push(op, &[x])),
+        (Op::Neg | Op::Abs, &[x]) if even => Some(g.push(op, &[x])),
         // f(-x) -> -f(x)  // f odd
-        Is(Op::Neg, &[x]) if odd => {
+        (Op::Neg, &[x]) if odd => {
             let image = g.push(op, &[x]);
             Some(g.push(Op::Neg, &[image]))
         }
@@ -241,30 +240,30 @@ fn inverse(g: &mut Builder, op: Op, x: Value) -> Option<Value> {
         // |x| -> -x  // x <= 0
         (Op::Abs, _) if bounds.hi() <= 0.0 => Some(g.push(Op::Neg, &[x])),
         // sqrt(x^2n) -> |x^n|  // x is defined where its power is; n > 0
-        (Op::Sqrt, Is(Op::Sqr | Op::PowInt(2..), _)) => {
+        (Op::Sqrt, (Op::Sqr | Op::PowInt(2..), _)) => {
             let (base, n) = exponent(g, x);
             let root = if n % 2 == 0 { integer_power(g, base, n / 2) } else { return None };
             Some(g.push(Op::Abs, &[root]))
         }
         // sqrt(x)^2 -> x  // x >= 0, else a domain is forgotten
-        (Op::Sqr, Is(Op::Sqrt, &[y])) if g.enclosure(y).lo() >= 0.0 => Some(y),
+        (Op::Sqr, (Op::Sqrt, &[y])) if g.enclosure(y).lo() >= 0.0 => Some(y),
         // cbrt(x)^3 -> x, cbrt(x^3) -> x
-        (Op::PowInt(3), Is(Op::Cbrt, &[y])) | (Op::Cbrt, Is(Op::PowInt(3), &[y])) => Some(y),
+        (Op::PowInt(3), (Op::Cbrt, &[y])) | (Op::Cbrt, (Op::PowInt(3), &[y])) => Some(y),
         // ln(exp(x)) -> x  // exp is positive everywhere
-        (Op::Ln, Is(Op::Exp, &[y]))
-        | (Op::Log2, Is(Op::Exp2, &[y]))
-        | (Op::Log10, Is(Op::Exp10, &[y]))
-        | (Op::Log1p, Is(Op::Expm1, &[y])) => Some(y),
+        (Op::Ln, (Op::Exp, &[y]))
+        | (Op::Log2, (Op::Exp2, &[y]))
+        | (Op::Log10, (Op::Exp10, &[y]))
+        | (Op::Log1p, (Op::Expm1, &[y])) => Some(y),
         // exp(ln(x)) -> x  // x > 0, else a domain is forgotten
-        (Op::Exp, Is(Op::Ln, &[y])) | (Op::Exp2, Is(Op::Log2, &[y])) | (Op::Exp10, Is(Op::Log10, &[y]))
+        (Op::Exp, (Op::Ln, &[y])) | (Op::Exp2, (Op::Log2, &[y])) | (Op::Exp10, (Op::Log10, &[y]))
             if g.enclosure(y).lo() > 0.0 =>
         {
             Some(y)
         }
         // expm1(log1p(x)) -> x  // x > -1
-        (Op::Expm1, Is(Op::Log1p, &[y])) if g.enclosure(y).lo() > -1.0 => Some(y),
+        (Op::Expm1, (Op::Log1p, &[y])) if g.enclosure(y).lo() > -1.0 => Some(y),
         // floor(x) -> x  // x is an integer: floor, ceiling, rounding or sign
-        (Op::Floor | Op::Ceil | Op::Round, Is(Op::Floor | Op::Ceil | Op::Round | Op::Sign, _)) => Some(x),
+        (Op::Floor | Op::Ceil | Op::Round, (Op::Floor | Op::Ceil | Op::Round | Op::Sign, _)) => Some(x),
         _ => None,
     }
 }
@@ -303,7 +302,7 @@ fn hypotenuse(g: &mut Builder, x: Value, y: Value) -> Option<Value> {
     }
     // hypot(-x, y) -> hypot(x, y), hypot(|x|, y) -> hypot(x, y)
     match g.shape(x) {
-        Is(Op::Neg | Op::Abs, &[x]) => Some(g.push(Op::Hypot, &[x, y])),
+        (Op::Neg | Op::Abs, &[x]) => Some(g.push(Op::Hypot, &[x, y])),
         _ => None,
     }
 }
@@ -362,7 +361,7 @@ fn comparison(g: &mut Builder, op: Op, x: Value, y: Value) -> Option<Value> {
 fn selection(g: &mut Builder, op: Op, condition: Value, yes: Value, no: Value) -> Option<Value> {
     // if 1 then x else y -> x  // by constant folding; a condition that bounds decide is a number by `only_value`
     // if 1 - c then x else y -> if c then y else x
-    if let Is(Op::Sub, &[one, negated]) = g.shape(condition)
+    if let (Op::Sub, &[one, negated]) = g.shape(condition)
         && g.number(one).is_some_and(One::is_one)
     {
         return Some(g.push(op, &[negated, no, yes]));
@@ -400,8 +399,8 @@ fn collect(g: &mut Builder, op: Op, x: Value, y: Value) -> Option<Value> {
 /// x as `c y`: a product with a number, a negation, or `1 x`. Numbers themselves are `1 x` too.
 fn scale(g: &Builder, x: Value) -> (BigRational, Value) {
     match g.shape(x) {
-        Is(Op::Neg, &[y]) => (-BigRational::one(), y),
-        Is(Op::Mul, &[a, b]) => match (g.number(a), g.number(b)) {
+        (Op::Neg, &[y]) => (-BigRational::one(), y),
+        (Op::Mul, &[a, b]) => match (g.number(a), g.number(b)) {
             (Some(c), _) => (c.clone(), b),
             (None, Some(c)) => (c.clone(), a),
             (None, None) => (BigRational::one(), x),
@@ -411,9 +410,9 @@ fn scale(g: &Builder, x: Value) -> (BigRational, Value) {
 }
 
 /// x as `y + c`.
-fn offset(g: &Builder, x: Value) -> Option<(Value, &BigRational)> {
+fn offset<'g>(g: &'g Builder, x: Value) -> Option<(Value, &'g BigRational)> {
     match g.shape(x) {
-        Is(Op::Add, &[a, b]) => g.number(b).map(|c| (a, c)).or_else(|| g.number(a).map(|c| (b, c))),
+        (Op::Add, &[a, b]) => g.number(b).map(|c| (a, c)).or_else(|| g.number(a).map(|c| (b, c))),
         _ => None,
     }
 }
@@ -421,8 +420,8 @@ fn offset(g: &Builder, x: Value) -> Option<(Value, &BigRational)> {
 /// x as `y^n` for an integer n; every value is its own first power.
 fn exponent(g: &Builder, x: Value) -> (Value, i32) {
     match g.shape(x) {
-        Is(Op::Sqr, &[y]) => (y, 2),
-        Is(Op::PowInt(n), &[y]) => (y, n),
+        (Op::Sqr, &[y]) => (y, 2),
+        (Op::PowInt(n), &[y]) => (y, n),
         _ => (x, 1),
     }
 }

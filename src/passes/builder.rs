@@ -12,13 +12,6 @@ use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
 
-/// What a row looks at: a number, or an operation with its operands.
-#[derive(Debug, Clone, Copy)]
-pub enum Shape<'a> {
-    Const(&'a BigRational),
-    Is(Op, &'a [Value]),
-}
-
 /// A graph in the making. Its inputs are those of the old graph in the same order, needed or not, so that bounds given by
 /// position stay valid and a kernel's signature does not depend on what a rewrite cancels.
 #[derive(Debug)]
@@ -71,11 +64,10 @@ impl<'a> Builder<'a> {
         self.graph.var(name)
     }
 
-    pub fn shape(&self, value: Value) -> Shape<'_> {
-        match self.graph.as_constant(value) {
-            Some(number) => Shape::Const(number),
-            None => Shape::Is(self.graph.node(value).op, self.graph.node(value).operands()),
-        }
+    /// The operation and its operands, which is what most rows look at.
+    pub fn shape(&self, value: Value) -> (Op, &[Value]) {
+        let node = self.graph.node(value);
+        (node.op, node.operands())
     }
 
     /// The number of a constant.
@@ -86,7 +78,7 @@ impl<'a> Builder<'a> {
     /// The operand of a unary node of that operation.
     pub fn under(&self, op: Op, value: Value) -> Option<Value> {
         match self.shape(value) {
-            Shape::Is(found, &[operand]) if found == op => Some(operand),
+            (found, &[operand]) if found == op => Some(operand),
             _ => None,
         }
     }

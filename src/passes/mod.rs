@@ -8,6 +8,8 @@ mod builder;
 mod exact;
 mod fold;
 
+use std::fmt;
+
 use crate::graph::Graph;
 use crate::graph::Node;
 use crate::graph::Op;
@@ -19,20 +21,21 @@ pub use bounds::bounds;
 use builder::Builder;
 pub use exact::{MAX_BITS, exact};
 
-/// One pass: what becomes of each operation whose operands are rewritten already.
+/// What becomes of an operation on given values of the new graph: another value of it, or `None` to leave it as it is.
+type Rewrite = fn(&mut Builder, Op, &[Value]) -> Option<Value>;
+
+/// One pass, as what it does to each operation whose operands are rewritten already.
 #[derive(Clone, Copy)]
 pub struct Pass {
     pub name: &'static str,
-    /// The value that replaces an operation on given values of the new graph; `None` leaves it as it is.
-    rewrite: fn(&mut Builder, Op, &[Value]) -> Option<Value>,
+    rewrite: Rewrite,
 }
 
-/// The passes in their order.
+/// The passes in their order. Each of them leaves equal values as one node, symmetric operations with the operand of
+/// smaller index first, and nothing that no output needs but the inputs.
 pub const PIPELINE: &[Pass] = &[
-    // Drops what no output needs. Inputs stay.
-    Pass { name: "dce", rewrite: |_, _, _| None },
-    // Operands of symmetric operations by their index, so that equal values become one node.
-    Pass { name: "cse", rewrite: order },
+    // That alone: common subexpressions and dead values.
+    Pass { name: "cse", rewrite: |_, _, _| None },
     // Numbers, exactly.
     Pass { name: "fold", rewrite: fold::rewrite },
     // Rewrite rows with their side conditions, by bounds and signs over the domain.
@@ -78,51 +81,47 @@ pub fn run(graph: &Graph, inputs: &[Interval]) -> (Graph, Vec<Report>) {
     (graph, reports)
 }
 
-/// A new graph of what the outputs need, with each operation replaced as `rewrite` says.
-fn rebuild(old: &Graph, inputs: &[Interval], rewrite: fn(&mut Builder, Op, &[Value]) -> Option<Value>) -> Graph {
+/// A new graph in which each operation that the outputs need is replaced as `rewrite` says.
+fn rebuild(old: &Graph, inputs: &[Interval], rewrite: Rewrite) -> Graph {
+    // The second sweep drops what the rows built on the way and orders operands by their final indices.
+    let rewritten = sweep(old, inputs, |builder, op, operands| settle(builder, op, operands, rewrite));
+    sweep(&rewritten, inputs, |builder, op, operands| match (op, operands) {
+        (Op::Add | Op::Mul | Op::Min | Op::Max | Op::Hypot | Op::Equal, &[x, y]) if x > y => builder.push(op, &[y, x]),
+        _ => builder.push(op, operands),
+    })
+}
+
+/// Copies what the outputs need, each operation by `copy`, and all inputs.
+fn sweep(old: &Graph, inputs: &[Interval], copy: impl Fn(&mut Builder, Op, &[Value]) -> Value) -> Graph {
     let mut builder = Builder::new(old.variables(), inputs);
     let roots: Vec<Value> = old.outputs().iter().map(|&(_, value)| value).collect();
     let needed = old.reachable(&roots);
     let mut image = vec![Value(u32::MAX); old.len()];
+    let mut operands = Vec::with_capacity(3);
     for (value, node) in old.iter().filter(|(value, _)| needed[value.index()]) {
+        operands.clear();
+        operands.extend(node.operands().iter().map(|v| image[v.index()]));
         image[value.index()] = match (node.op, old.as_constant(value)) {
             (_, Some(number)) => builder.constant(number.clone()),
-            (Op::Var(id), _) => builder.input(&old.variables()[id as usize]),
-            (op, None) => {
-                let operands: Vec<Value> = node.operands().iter().map(|v| image[v.index()]).collect();
-                rewritten(&mut builder, op, operands, rewrite)
-            }
+            (Op::Var(id), None) => builder.input(&old.variables()[id as usize]),
+            (op, None) => copy(&mut builder, op, &operands),
         };
     }
     builder.finish(old.outputs().iter().map(|(name, value)| (name.clone(), image[value.index()])))
 }
 
-/// Applies rows to an operation until none fits.
-fn rewritten(
-    builder: &mut Builder,
-    mut op: Op,
-    mut operands: Vec<Value>,
-    rewrite: fn(&mut Builder, Op, &[Value]) -> Option<Value>,
-) -> Value {
+/// Rewrites an operation until no row fits.
+fn settle(builder: &mut Builder, mut op: Op, operands: &[Value], rewrite: Rewrite) -> Value {
+    let mut operands = operands.to_vec();
     for _ in 0..MAX_STEPS {
         let Some(value) = rewrite(builder, op, &operands) else { break };
-        let node: &Node = builder.graph().node(value);
+        let node = builder.graph().node(value);
         if node.operands().is_empty() {
             return value;
         }
         (op, operands) = (node.op, node.operands().to_vec());
     }
     builder.push(op, &operands)
-}
-
-/// x op y -> y op x  // for symmetric operations, the operand of smaller index first
-fn order(builder: &mut Builder, op: Op, operands: &[Value]) -> Option<Value> {
-    match (op, operands) {
-        (Op::Add | Op::Mul | Op::Min | Op::Max | Op::Hypot | Op::Equal, &[x, y]) if x > y => {
-            Some(builder.push(op, &[y, x]))
-        }
-        _ => None,
-    }
 }
 
 /// Whether two graphs have the same text.
@@ -132,4 +131,14 @@ fn same(a: &Graph, b: &Graph) -> bool {
         _ => node == b.node(value),
     };
     a.len() == b.len() && a.variables() == b.variables() && a.outputs() == b.outputs() && a.iter().all(same_node)
+}
+
+/// A heading that names the pass, then the graph, or `(unchanged)` on the line of the heading.
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.changed {
+            Some(graph) => write!(f, "# {}\n{graph}", self.pass),
+            None => writeln!(f, "# {} (unchanged)", self.pass),
+        }
+    }
 }
