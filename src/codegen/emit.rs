@@ -239,8 +239,8 @@ impl Emitter<'_, '_> {
             MaskBits(x) => self.at(x),
             IntAdd(x, y) => self.b.ins().iadd(self.values[x.index()], self.values[y.index()]),
             IntSub(x, y) => self.b.ins().isub(self.values[x.index()], self.values[y.index()]),
-            ShiftLeft(x, n) => self.b.ins().ishl_imm(self.values[x.index()], i64::from(n)),
-            ShiftRight(x, n) => self.b.ins().ushr_imm(self.values[x.index()], i64::from(n)),
+            ShiftLeft(x, n) => self.b.ins().ishl_imm_u(self.values[x.index()], i64::from(n)),
+            ShiftRight(x, n) => self.b.ins().ushr_imm_u(self.values[x.index()], i64::from(n)),
         }
     }
 

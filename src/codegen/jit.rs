@@ -52,7 +52,7 @@ impl<T: Format> JitKernel<T> {
         assert_eq!(program.precision, T::PRECISION);
         if !rounding::available() {
             let title = "this machine has no AVX and FMA instructions, which compiled kernels need";
-            return Err(Diagnostic::error(code::UNSUPPORTED, title));
+            return Err(Diagnostic::error(code::INTERNAL, title));
         }
         let isa = emit::isa(program)?;
         let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));

@@ -192,8 +192,8 @@ impl Lowering<'_> {
         let hi = b.min(form.ends.hi, upper);
         let ends = Ends { nlo: b.max(nlo, outer_negated_upper), hi: b.max(hi, outer_lower) };
         let sign = match () {
-            _ if lo >= 0.0 => Sign::NonNegative,
-            _ if hi <= 0.0 => Sign::NonPositive,
+            _ if range.lo() >= 0.0 => Sign::NonNegative,
+            _ if range.hi() <= 0.0 => Sign::NonPositive,
             _ => form.sign,
         };
         Form { ends, sign, ..form }

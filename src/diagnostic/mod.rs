@@ -1,5 +1,7 @@
 //! Where source text lives, how a place in it is named, and the one shape of every message to the user.
 
+pub mod code;
+
 use std::sync::Arc;
 
 /// Index of a file in a [`SourceMap`].

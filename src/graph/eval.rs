@@ -66,6 +66,7 @@ pub fn apply(graph: &Graph, node: &Node, operands: &[Decorated]) -> Decorated {
         Op::LessEqual => compare(x(), y(), Decorated::less_equal),
         Op::Equal => compare(x(), y(), Decorated::equal),
         Op::Select => select(operands, Interval::hull),
+        Op::Kink => kink(operands),
         // Across the jump the difference quotient takes any value.
         Op::SelectJump => select(operands, |_, _| Interval::ENTIRE),
     }
@@ -76,6 +77,22 @@ fn compare(x: Decorated, y: Decorated, answer: fn(Decorated, Decorated) -> Decor
     let truth = answer(x, y);
     let none = x.interval().is_empty() || y.interval().is_empty();
     if none { Decorated::with(Interval::EMPTY, truth.decoration()) } else { truth }
+}
+
+/// One arm where the switch is proved of one sign, else the hull of both: at 0 itself a kink has both slopes.
+fn kink(operands: &[Decorated]) -> Decorated {
+    let &[switch, below, above] = operands else { unreachable!("a kink has three operands") };
+    let side = switch.interval();
+    let arm = match () {
+        _ if side.is_empty() => Decorated::with(Interval::EMPTY, switch.decoration()),
+        _ if side.hi() < 0.0 => below,
+        _ if side.lo() > 0.0 => above,
+        _ => {
+            let hull = below.interval().hull(above.interval());
+            Decorated::with(hull, below.decoration().min(above.decoration()).min(Decoration::Def))
+        }
+    };
+    Decorated::with(arm.interval(), arm.decoration().min(switch.decoration()))
 }
 
 /// The arm that the condition decides for, with its value and decoration alone; undecided, `undecided` of both arms, and no

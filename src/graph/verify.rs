@@ -120,6 +120,7 @@ pub fn truths(graph: &Graph) -> Vec<bool> {
             | Op::Hypot
             | Op::Pow
             | Op::Atan2
+            | Op::Kink
             | Op::SelectJump => false,
         });
     }

@@ -75,6 +75,14 @@ pub fn apply(op: Op, operands: &[f64]) -> f64 {
         Op::LessEqual => truth(x() <= y()),
         Op::Equal => truth(x() == y()),
         Op::Select | Op::SelectJump if x().is_nan() => f64::NAN,
+        Op::Kink if x().is_nan() => f64::NAN,
+        Op::Kink => {
+            if x() < 0.0 {
+                y()
+            } else {
+                operands[2]
+            }
+        }
         Op::Select | Op::SelectJump => {
             if x() != 0.0 {
                 y()

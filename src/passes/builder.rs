@@ -109,7 +109,7 @@ impl<'a> Builder<'a> {
                 Op::Var(id) => Decorated::new(self.inputs[id as usize]),
                 _ => apply(&self.graph, node, &operands),
             };
-            let set_valued = matches!(node.op, Op::Entire | Op::SelectJump)
+            let set_valued = matches!(node.op, Op::Entire | Op::Kink | Op::SelectJump)
                 || node.operands().iter().any(|v| facts[v.index()].set_valued);
             facts.push(Fact { enclosure, set_valued });
         }

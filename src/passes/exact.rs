@@ -27,7 +27,7 @@ pub fn exact(op: Op, operands: &[&BigRational]) -> Option<BigRational> {
     let when = |condition: bool, value: BigRational| condition.then_some(value);
     let truth = |condition: bool| Some(if condition { one() } else { zero() });
     let value = match op {
-        Op::Const(_) | Op::Var(_) | Op::Pi | Op::Entire | Op::SelectJump => None,
+        Op::Const(_) | Op::Var(_) | Op::Pi | Op::Entire | Op::Kink | Op::SelectJump => None,
         Op::PowInt(n) => power(x?, n.into()),
         Op::PowRatio(p, q) => power(&root(x?, q)?, p.into()),
         Op::Neg => Some(-x?),
