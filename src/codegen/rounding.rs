@@ -36,9 +36,9 @@ pub unsafe fn call_upward(entry: Entry, inputs: *const u8, outputs: *mut u8, uni
     // call may change. Alignment: no push precedes the call and `asm!` blocks start with the stack aligned to 16.
     unsafe {
         std::arch::asm!(
-            "ldmxcsr [{up}]",
+            "ldmxcsr [rip + {up}]",
             "call {entry}",
-            "ldmxcsr [{nearest}]",
+            "ldmxcsr [rip + {nearest}]",
             up = sym words::UPWARD,
             nearest = sym words::NEAREST,
             entry = in(reg) entry,

@@ -1,0 +1,111 @@
+//! Compiled kernels against the reference interpreter: on every box the two enclosures of the same formula must agree
+//! up to rounding, and every point's value must lie in both.
+
+use std::sync::Arc;
+
+use imp::codegen::Compiler;
+use imp::derive::Arithmetic;
+use imp::derive::Output;
+use imp::derive::Rounding;
+use imp::derive::Spec;
+use imp::graph::Graph;
+use imp::graph::Op;
+use imp::graph::Value;
+use imp::interpret::Interpreter;
+use imp::interval::Interval;
+use imp::kernel::Backend;
+use imp::kernel::Kernel;
+use imp::kernel::Packet;
+use imp::kernel::Real;
+
+/// A spec of one output over the inputs x, y, z of a graph.
+fn spec(graph: Graph, root: Value, domain: Option<f64>, arithmetic: Arithmetic) -> Spec {
+    let inputs: Vec<String> = graph.variables().to_vec();
+    let mut graph = graph;
+    let values: Vec<Value> = inputs.iter().map(|name| graph.var(name)).collect();
+    let range = domain.map(|r| Interval::new(-r, r).expect("a range"));
+    Spec {
+        outputs: vec![Output::Enclosure(root)],
+        domain: range.iter().flat_map(|r| values.iter().map(|&v| (v, *r)).collect::<Vec<_>>()).collect(),
+        promises: Vec::new(),
+        symbols: inputs.iter().take(3).cloned().collect(),
+        uniforms: Vec::new(),
+        inputs,
+        arithmetic,
+        rounding: Rounding::Outward,
+        graph: Arc::new(graph),
+    }
+}
+
+fn barth() -> (Graph, Value) {
+    let mut g = Graph::new();
+    let [x, y, z] = ["x", "y", "z"].map(|name| g.var(name));
+    let [x2, y2, z2] = [x, y, z].map(|v| g.sqr(v));
+    let (one, five, two, four) = (g.int(1), g.int(5), g.int(2), g.int(4));
+    let root = g.unary(Op::Sqrt, five);
+    let sum = g.add(one, root);
+    let phi = g.div(sum, two);
+    let phi2 = g.sqr(phi);
+    let factor = |g: &mut Graph, a: Value, b: Value| {
+        let scaled = g.mul(phi2, a);
+        g.sub(scaled, b)
+    };
+    let [p, q, r] = [(x2, y2), (y2, z2), (z2, x2)].map(|(a, b)| factor(&mut g, a, b));
+    let pq = g.mul(p, q);
+    let pqr = g.mul(pq, r);
+    let left = g.mul(four, pqr);
+    let two_phi = g.mul(two, phi);
+    let weight = g.add(one, two_phi);
+    let xy = g.add(x2, y2);
+    let xyz = g.add(xy, z2);
+    let shell = g.sub(xyz, one);
+    let shell2 = g.sqr(shell);
+    let right = g.mul(weight, shell2);
+    let f = g.sub(left, right);
+    (g, f)
+}
+
+fn fill<T: Real>(rng: &mut fastrand::Rng, slots: usize, width: f64) -> Vec<Packet<T>> {
+    let mut inputs = vec![Packet::<T>::default(); 2 * slots];
+    for slot in 0..slots {
+        for lane in 0..T::LANES {
+            let lo = T::nearest(rng.f64() * 4.0 - 2.0).to_f64();
+            let hi = T::up(lo + width * rng.f64());
+            inputs[2 * slot].lanes_mut()[lane] = T::nearest(-lo);
+            inputs[2 * slot + 1].lanes_mut()[lane] = hi;
+        }
+    }
+    inputs
+}
+
+fn agree<T: Real>(kernel: &dyn Kernel<T>, reference: &dyn Kernel<T>, slots: usize, slack: f64, seed: u64) {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    for round in 0..200 {
+        let width = [0.0, 1e-6, 1e-2, 1.0][round % 4];
+        let inputs = fill::<T>(&mut rng, slots, width);
+        let mut got = vec![Packet::<T>::default(); 3];
+        let mut expected = vec![Packet::<T>::default(); 3];
+        kernel.run(&[], &inputs, &mut got);
+        reference.run(&[], &inputs, &mut expected);
+        for lane in 0..T::LANES {
+            let [nlo, hi] = [0, 1].map(|i| got[i].lanes()[lane].to_f64());
+            let [ref_nlo, ref_hi] = [0, 1].map(|i| expected[i].lanes()[lane].to_f64());
+            assert!(nlo >= -ref_hi && hi >= -ref_nlo, "seed {seed} round {round}: [{}, {hi}] misses [{}, {ref_hi}]", -nlo, -ref_nlo);
+            let scale = ref_nlo.abs().max(ref_hi.abs()).max(1.0);
+            assert!((nlo - ref_nlo).abs() <= slack * scale && (hi - ref_hi).abs() <= slack * scale,
+                "seed {seed} round {round}: [{}, {hi}] is far from [{}, {ref_hi}]", -nlo, -ref_nlo);
+            let (word, ref_word) = (got[2].lanes()[lane].verdict(), expected[2].lanes()[lane].verdict());
+            assert_eq!(word & !ref_word, 0, "seed {seed} round {round}: the kernel claims more than the reference");
+        }
+    }
+}
+
+#[test]
+fn barth_sextic_agrees_with_the_interpreter() {
+    for domain in [None, Some(4.0)] {
+        let (graph, f) = barth();
+        let spec = spec(graph, f, domain, Arithmetic::Interval);
+        agree::<f32>(&*Compiler.compile_f32(&spec).unwrap(), &*Interpreter.compile_f32(&spec).unwrap(), 3, 1e-3, 1);
+        agree::<f64>(&*Compiler.compile_f64(&spec).unwrap(), &*Interpreter.compile_f64(&spec).unwrap(), 3, 1e-11, 2);
+    }
+}
