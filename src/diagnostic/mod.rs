@@ -4,6 +4,13 @@ pub mod code;
 
 use std::sync::Arc;
 
+pub mod code;
+mod render;
+mod suggest;
+
+pub use crate::diagnostic::render::render;
+pub use crate::diagnostic::suggest::did_you_mean;
+
 /// Index of a file in a [`SourceMap`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FileId(pub u32);
@@ -41,6 +48,23 @@ impl SourceMap {
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<str>>) -> FileId {
         self.files.push(Source { name: name.into(), text: text.into() });
         FileId(self.files.len() as u32 - 1)
+    }
+
+    /// Adds a file as it was read. Bytes that are not UTF-8 are replaced by `\u{FFFD}`, and the message says where the
+    /// first of them stands; such a file should not be read further.
+    pub fn add_bytes(&mut self, name: impl Into<String>, bytes: &[u8]) -> (FileId, Option<Diagnostic>) {
+        let (name, text) = (name.into(), String::from_utf8_lossy(bytes));
+        let title = format!("`{name}` is not text in UTF-8");
+        let file = self.add(name, text.as_ref());
+        let Err(error) = std::str::from_utf8(bytes) else { return (file, None) };
+        let at = error.valid_up_to();
+        let mut diagnostic = Diagnostic::error(code::NOT_TEXT, title);
+        // Everything before the first bad byte is unchanged, so offsets agree up to here.
+        if let Ok(start) = u32::try_from(at) {
+            let end = start.saturating_add(char::REPLACEMENT_CHARACTER.len_utf8() as u32);
+            diagnostic = diagnostic.at(Span { file, start, end }, format!("byte {at} is 0x{:02X}", bytes[at]));
+        }
+        (file, Some(diagnostic.help("save the file as UTF-8")))
     }
 
     pub fn get(&self, file: FileId) -> &Source {

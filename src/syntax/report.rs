@@ -1,0 +1,58 @@
+//! The text being read and what is wrong with it: shared by all steps from tokens to AST.
+
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::FileId;
+use crate::diagnostic::Span;
+use crate::syntax::token::Lexeme;
+
+/// One file's text, and the messages found in it so far.
+#[derive(Debug)]
+pub struct Reporter<'t> {
+    pub file: FileId,
+    pub text: &'t str,
+    pub found: Vec<Diagnostic>,
+}
+
+impl<'t> Reporter<'t> {
+    pub fn new(file: FileId, text: &'t str) -> Self {
+        Self { file, text, found: Vec::new() }
+    }
+
+    pub fn span(&self, start: u32, end: u32) -> Span {
+        Span { file: self.file, start, end }
+    }
+
+    /// The place of one token.
+    pub fn at(&self, lexeme: Lexeme) -> Span {
+        self.span(lexeme.start, lexeme.end)
+    }
+
+    pub fn slice(&self, start: u32, end: u32) -> &'t str {
+        &self.text[start as usize..end as usize]
+    }
+
+    pub fn text_of(&self, lexeme: Lexeme) -> &'t str {
+        self.slice(lexeme.start, lexeme.end)
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.found.push(diagnostic);
+    }
+
+    /// Source text as it goes into an offered edit: on one line, or `None` where it would be too long to help.
+    pub fn excerpt(&self, start: u32, end: u32) -> Option<String> {
+        one_line(self.slice(start, end))
+    }
+}
+
+/// `text` with its white space collapsed, or `None` where it is too long (or holds a comment) for an offered edit.
+pub fn one_line(text: &str) -> Option<String> {
+    const LIMIT: usize = 80;
+    if text.len() > LIMIT || text.contains('#') {
+        return None;
+    }
+    let inner = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    // A blank at either end separates factors; it must survive.
+    let lead = if text.starts_with(char::is_whitespace) { " " } else { "" };
+    Some(format!("{lead}{inner}"))
+}
