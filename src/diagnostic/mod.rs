@@ -1,7 +1,5 @@
 //! Where source text lives, how a place in it is named, and the one shape of every message to the user.
 
-pub mod code;
-
 use std::sync::Arc;
 
 pub mod code;
