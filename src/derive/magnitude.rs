@@ -31,7 +31,8 @@ pub fn bounds(spec: &Spec, real: &[Decorated], precision: Precision) -> Vec<f64>
             Op::Add | Op::Sub => at(0) + at(1),
             Op::Mul => at(0) * at(1),
             Op::Sqr => at(0) * at(0),
-            Op::PowInt(n) if n >= 0 => at(0).powi(n),
+            // Each of the n factors brings its own slack.
+            Op::PowInt(n) if n >= 0 => (at(0) * SLACK).powi(n),
             Op::Sqrt => at(0).sqrt(),
             Op::Min | Op::Max => at(0).max(at(1)),
             Op::Hypot => at(0).hypot(at(1)),
