@@ -2,9 +2,14 @@
 //! slow and written to be checked by eye; every compiled kernel must enclose what it encloses, and no kernel may prove
 //! more than it does.
 
+mod affine;
 mod point;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
+
+use affine::Form;
 
 use crate::derive::Arithmetic;
 use crate::derive::Output;
@@ -28,6 +33,8 @@ use crate::kernel::verdict;
 /// Enclosures are computed in `f64` for both formats: `f32` inputs are exact there, and outputs are rounded outward. With
 /// [`Rounding::Nearest`](crate::derive::Rounding) they hold all the same, since nothing here is rounded otherwise; that
 /// such a program proves nothing is for its consumer to heed.
+///
+/// Affine programs carry an AF1 form beside each enclosure and intersect the two after each operation.
 ///
 /// Point kernels evaluate with the functions of the standard library, constants rounded to nearest, NaN where an
 /// operation is undefined; they take no notice of the domain.
@@ -59,8 +66,8 @@ struct Program {
     lanes: usize,
     uniforms: usize,
     outputs: Vec<Output>,
-    /// The inputs that outputs or domain need.
-    inputs: Vec<(Value, Source)>,
+    /// The inputs that outputs or domain need, with the noise symbol of those that have one.
+    inputs: Vec<(Value, Source, Option<usize>)>,
     /// The operations that they need, in order, without constants and inputs.
     steps: Vec<Value>,
     /// The enclosure of each node that is a constant; ill elsewhere.
@@ -82,6 +89,9 @@ impl Program {
                 "a point program has values for outputs, all others have enclosures",
             ));
         }
+        if spec.symbols.len() > affine::MAX_SYMBOLS {
+            return Err(Diagnostic::error("E0901", "a program has at most three noise symbols"));
+        }
         let mut roots: Vec<Value> = spec.outputs.iter().map(|&output| output_value(output)).collect();
         roots.extend(spec.domain.iter().filter(|_| !point).map(|&(value, _)| value));
         let needed = graph.reachable(&roots);
@@ -91,7 +101,11 @@ impl Program {
         let mut constants = vec![Decorated::ILL; graph.len()];
         for (value, node) in graph.iter().filter(|(value, _)| needed[value.index()]) {
             match node.op {
-                Op::Var(id) => inputs.push((value, source(spec, &graph.variables()[id as usize])?)),
+                Op::Var(id) => {
+                    let name = &graph.variables()[id as usize];
+                    let symbol = spec.symbols.iter().position(|symbol| symbol == name);
+                    inputs.push((value, source(spec, name)?, symbol));
+                }
                 _ if node.operands().is_empty() => constants[value.index()] = apply(graph, node, &[]),
                 _ => steps.push(value),
             }
@@ -119,19 +133,37 @@ impl Program {
         if self.arithmetic == Arithmetic::Point { 1 } else { 2 }
     }
 
-    /// The enclosures of one box, and whether it lies outside or wholly inside of the domain.
+    /// The enclosures of one box.
     fn enclose(&self, input: impl Fn(Source) -> Decorated) -> Enclosed {
         let mut enclosed = Enclosed { values: self.constants.clone(), outside: false, inside: true };
-        for &(value, source) in &self.inputs {
+        // Without affine arithmetic the forms stay empty; constants get theirs where they are used.
+        let affine = self.arithmetic == Arithmetic::Affine;
+        let mut forms: Vec<Option<Form>> = vec![None; if affine { self.graph.len() } else { 0 }];
+        for &(value, source, symbol) in &self.inputs {
             enclosed.values[value.index()] = input(source);
             enclosed.restrict(value, self.known[value.index()]);
+            if let (true, Some(symbol)) = (affine, symbol) {
+                forms[value.index()] = Some(Form::from_interval(enclosed.values[value.index()].interval(), symbol));
+            }
         }
         let mut operands = Vec::with_capacity(3);
         for &value in &self.steps {
             let node = self.graph.node(value);
             operands.clear();
             operands.extend(node.operands().iter().map(|v| enclosed.values[v.index()]));
-            enclosed.values[value.index()] = apply(&self.graph, node, &operands);
+            let mut result = apply(&self.graph, node, &operands);
+            if affine {
+                let form = |v: &Value| {
+                    let interval = enclosed.values[v.index()].interval();
+                    (forms[v.index()].unwrap_or_else(|| Form::constant(interval)), interval)
+                };
+                let operand_forms: Vec<(Form, Interval)> = node.operands().iter().map(form).collect();
+                let form = affine::apply(node.op, &operand_forms, result.interval());
+                forms[value.index()] = Some(form);
+                // Both hold wherever the operation is defined, so that what is left holds too.
+                result = Decorated::with(result.interval().intersect(form.to_interval()), result.decoration());
+            }
+            enclosed.values[value.index()] = result;
             enclosed.restrict(value, self.known[value.index()]);
         }
         enclosed
@@ -171,7 +203,7 @@ impl Program {
                 values[value.index()] = point::constant(number);
             }
         }
-        for &(value, source) in &self.inputs {
+        for &(value, source, _) in &self.inputs {
             values[value.index()] = match source {
                 Source::Lane(i) => inputs[i].lanes()[lane],
                 Source::Uniform(i) => uniforms[i],

@@ -30,3 +30,31 @@ pub fn bounds(graph: &Graph, inputs: &[Interval], known: &[(Value, Interval)]) -
     }
     bounds
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::parse;
+    use crate::interval::Decoration;
+
+    #[test]
+    fn what_is_known_of_a_value_reaches_its_users() {
+        let graph = parse("v0 = var x\nv1 = var y\nv2 = add v0, v1\nv3 = ln v2\nout f = v3").unwrap();
+        let interval = |lo, hi| Interval::new(lo, hi).unwrap();
+        let inputs = [interval(-1.0, 2.0), interval(0.0, 1.0)];
+        let free = bounds(&graph, &inputs, &[]);
+        assert_eq!(free[2], Decorated::new(interval(-1.0, 3.0)));
+        assert_eq!(free[3].decoration(), Decoration::Trv);
+        let known = [(Value(0), interval(0.5, 9.0)), (Value(2), interval(1.0, 9.0))];
+        let restricted = bounds(&graph, &inputs, &known);
+        assert_eq!(restricted[2], Decorated::new(interval(1.0, 3.0)));
+        assert_eq!((restricted[3].interval().lo(), restricted[3].decoration()), (0.0, Decoration::Com));
+    }
+
+    #[test]
+    fn overflow_shows_as_an_infinite_bound() {
+        let graph = parse("v0 = var x\nv1 = exp v0\nv2 = exp v1\nout f = v2").unwrap();
+        let bounds = bounds(&graph, &[Interval::new(0.0, 10.0).unwrap()], &[]);
+        assert!(bounds[1].interval().is_bounded() && !bounds[2].interval().is_bounded());
+    }
+}
