@@ -15,6 +15,7 @@ use crate::derive::Arithmetic;
 use crate::derive::Output;
 use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
@@ -90,9 +91,9 @@ impl Program {
             ));
         }
         if spec.symbols.len() > affine::MAX_SYMBOLS {
-            return Err(Diagnostic::error("E0901", "a program has at most three noise symbols"));
+            return Err(Diagnostic::error(code::INTERNAL, "a program has at most three noise symbols"));
         }
-        let mut roots: Vec<Value> = spec.outputs.iter().map(|&output| output_value(output)).collect();
+        let mut roots: Vec<Value> = spec.outputs.iter().map(|output| output.value()).collect();
         roots.extend(spec.domain.iter().filter(|_| !point).map(|&(value, _)| value));
         let needed = graph.reachable(&roots);
 
@@ -182,7 +183,7 @@ impl Program {
             slots.next().expect("the slots of all outputs").lanes_mut()[lane] = number;
         };
         for &output in &self.outputs {
-            let (interval, verdict) = enclosed.output(output_value(output));
+            let (interval, verdict) = enclosed.output(output.value());
             if let Output::Enclosure(_) = output {
                 let (lo, hi) = if interval.is_empty() {
                     (f64::INFINITY, f64::NEG_INFINITY)
@@ -218,7 +219,7 @@ impl Program {
             values[value.index()] = point::apply(node.op, &operands);
         }
         for (packet, &output) in outputs.iter_mut().zip(&self.outputs) {
-            packet.lanes_mut()[lane] = T::nearest(values[output_value(output).index()]);
+            packet.lanes_mut()[lane] = T::nearest(values[output.value().index()]);
         }
     }
 }
@@ -296,18 +297,12 @@ impl Enclosed {
     }
 }
 
-fn output_value(output: Output) -> Value {
-    match output {
-        Output::Value(value) | Output::Enclosure(value) | Output::Verdict(value) => value,
-    }
-}
-
 fn source(spec: &Spec, name: &str) -> Result<Source, Diagnostic> {
     let position = |names: &[String]| names.iter().position(|n| n == name);
     match (position(&spec.inputs), position(&spec.uniforms)) {
         (Some(i), _) => Ok(Source::Lane(i)),
         (None, Some(i)) => Ok(Source::Uniform(i)),
-        (None, None) => Err(Diagnostic::error("E0901", format!("the program has no input {name}"))),
+        (None, None) => Err(Diagnostic::error(code::INTERNAL, format!("the program has no input {name}"))),
     }
 }
 

@@ -74,22 +74,10 @@ pub fn apply(op: Op, operands: &[f64]) -> f64 {
         Op::Less => truth(x() < y()),
         Op::LessEqual => truth(x() <= y()),
         Op::Equal => truth(x() == y()),
-        Op::Select | Op::SelectJump if x().is_nan() => f64::NAN,
-        Op::Kink if x().is_nan() => f64::NAN,
-        Op::Kink => {
-            if x() < 0.0 {
-                y()
-            } else {
-                operands[2]
-            }
-        }
-        Op::Select | Op::SelectJump => {
-            if x() != 0.0 {
-                y()
-            } else {
-                operands[2]
-            }
-        }
+        Op::Select | Op::SelectJump | Op::Kink if x().is_nan() => f64::NAN,
+        Op::Select | Op::SelectJump => operands[if x() != 0.0 { 1 } else { 2 }],
+        // At the kink itself the slope above stands for both.
+        Op::Kink => operands[if x() < 0.0 { 1 } else { 2 }],
     }
 }
 

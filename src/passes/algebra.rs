@@ -35,6 +35,7 @@ pub fn rewrite(g: &mut Builder, op: Op, operands: &[Value]) -> Option<Value> {
             Op::Less | Op::LessEqual | Op::Equal => comparison(g, op, x, y),
             _ => None,
         },
+        [switch, below, above] if op == Op::Kink => kink(g, switch, below, above),
         [condition, yes, no] => selection(g, op, condition, yes, no),
         _ => None,
     }
@@ -384,6 +385,25 @@ fn selection(g: &mut Builder, op: Op, condition: Value, yes: Value, no: Value) -
         return Some(g.push(Op::Sub, &[no, condition]));
     }
     None
+}
+
+/// The derivative at a kink, between the arms where the switch is 0.
+fn kink(g: &mut Builder, switch: Value, below: Value, above: Value) -> Option<Value> {
+    let bounds = g.enclosure(switch);
+    if g.total(switch) {
+        // kink(s, x, y) -> x  // s < 0; total(s)
+        // kink(s, x, x) -> x  // total(s); between equal slopes there is one
+        if bounds.hi() < 0.0 || below == above {
+            return Some(below);
+        }
+        // kink(s, x, y) -> y  // s > 0; total(s)
+        if bounds.lo() > 0.0 {
+            return Some(above);
+        }
+    }
+    // kink(-s, x, y) -> kink(s, y, x)
+    let switch = g.under(Op::Neg, switch)?;
+    Some(g.push(Op::Kink, &[switch, above, below]))
 }
 
 /// `c x op d x` as one multiple of x, for `op` a sum or difference.

@@ -26,7 +26,7 @@ pub struct Builder<'a> {
 struct Fact {
     /// The natural extension over the whole domain.
     enclosure: Decorated,
-    /// Whether the cone of the node holds `Entire` or `SelectJump`.
+    /// Whether the cone of the node holds `Entire`, `Kink` or `SelectJump`.
     set_valued: bool,
 }
 
@@ -94,8 +94,8 @@ impl<'a> Builder<'a> {
         enclosure.decoration() >= Decoration::Def
     }
 
-    /// Whether the value is one real number at each point. A derivative across a possible jump is not: two uses of
-    /// `Entire` are unknown numbers that need not be equal, so that no row may treat them as one.
+    /// Whether the value is one real number at each point. A derivative across a possible jump or at a kink is not: two
+    /// uses of `Entire` are unknown numbers that need not be equal, so that no row may treat them as one.
     pub fn is_function(&self, value: Value) -> bool {
         !self.fact(value).set_valued
     }
