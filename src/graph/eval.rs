@@ -207,4 +207,13 @@ mod tests {
         let text = "v0 = var x\nv1 = const 9\nv2 = floor v0\nv3 = less v2, v1\nv4 = select v3, v0, v1\nout f = v4";
         assert_eq!(f(text, interval(0.5, 2.5)), (interval(0.5, 2.5), Decoration::Dac));
     }
+
+    #[test]
+    fn a_kink_has_both_slopes_where_the_switch_may_be_zero() {
+        let text = "v0 = var x\nv1 = const -1\nv2 = const 1\nv3 = kink v0, v1, v2\nout f = v3";
+        assert_eq!(f(text, interval(-3.0, -1.0)), (interval(-1.0, -1.0), Decoration::Com));
+        assert_eq!(f(text, interval(1.0, 3.0)), (Interval::ONE, Decoration::Com));
+        assert_eq!(f(text, interval(0.0, 3.0)), (interval(-1.0, 1.0), Decoration::Def));
+        assert_eq!(f(text, Interval::EMPTY), (Interval::EMPTY, Decoration::Trv));
+    }
 }

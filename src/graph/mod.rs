@@ -33,7 +33,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// One operation with its operands; unused places repeat [`Node::NONE`].
+/// One operation with its operands; unused places repeat `Node::NONE`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Node {
     pub op: Op,
