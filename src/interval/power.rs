@@ -25,7 +25,7 @@ impl Interval {
         let divisor = q.gcd(&p.unsigned_abs());
         // |p| / divisor fits an i32 unless p = i32::MIN stays whole, which i64 holds.
         let (p, q) = ((i64::from(p) / i64::from(divisor)) as i32, q / divisor);
-        let x = if q % 2 == 0 { self.intersect(Self::NONNEGATIVE) } else { self };
+        let x = if q.is_multiple_of(2) { self.intersect(Self::NONNEGATIVE) } else { self };
         if x.is_empty() {
             return Self::EMPTY;
         }

@@ -14,7 +14,7 @@ fn is_at_most(b: f64, x: f64, p: i32, q: u32) -> bool {
     if b.is_infinite() {
         return b < 0.0;
     }
-    if q % 2 == 0 && b < 0.0 {
+    if q.is_multiple_of(2) && b < 0.0 {
         return true;
     }
     let power: BigRational = Pow::pow(exact(x), p);
@@ -26,7 +26,7 @@ fn is_at_least(b: f64, x: f64, p: i32, q: u32) -> bool {
         return b > 0.0;
     }
     let power: BigRational = Pow::pow(exact(x), p);
-    !(q % 2 == 0 && b < 0.0) && Pow::pow(exact(b), q) >= power
+    !(q.is_multiple_of(2) && b < 0.0) && Pow::pow(exact(b), q) >= power
 }
 
 fn in_domain(x: f64, p: i32, q: u32) -> bool {
