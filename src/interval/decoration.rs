@@ -158,7 +158,7 @@ macro_rules! unary {
     };
 }
 
-/// Operations of two arguments, as in [`unary`].
+/// Operations of two arguments, as in `unary`.
 macro_rules! binary {
     ($($name:ident($x:ident, $y:ident) $value:expr, $local:expr;)*) => {
         impl Decorated {

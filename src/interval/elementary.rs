@@ -1,94 +1,92 @@
 //! Exponential, logarithmic, hyperbolic and inverse functions.
 //!
 //! CORE-MATH (Sibidanov, Zimmermann, Glondu, 2022) returns the `f64` nearest to the real value, so the value lies
-//! between that number's two neighbours. Where the value is known to be a `f64` itself, the bound stays exact.
+//! between that number's two neighbours. Where a neighbour is known to be a value itself, the bound is exact.
 
 use super::Interval;
 
 impl Interval {
-    /// The values of a function that never decreases on this part of its domain. `nearest` is correctly rounded,
-    /// limits at infinite bounds included; `exact` tells for which arguments it is the value itself.
-    fn increasing(self, nearest: impl Fn(f64) -> f64, exact: impl Fn(f64) -> bool) -> Self {
+    /// The values of an increasing function on this part of its domain. `nearest` is correctly rounded, limits at
+    /// infinite bounds included; `preimage` returns the `f64` whose value is exactly the given one, if there is one.
+    fn increasing(self, nearest: impl Fn(f64) -> f64, preimage: impl Fn(f64) -> Option<f64>) -> Self {
         if self.is_empty() {
             return self;
         }
+        // Where x lies beside the preimage of its rounded value, the real value lies on the same side of that.
         let (lo, hi) = (nearest(self.lo), nearest(self.hi));
-        Self::raw(if exact(self.lo) { lo } else { lo.next_down() }, if exact(self.hi) { hi } else { hi.next_up() })
+        let lo = if preimage(lo).is_some_and(|e| e <= self.lo) { lo } else { lo.next_down() };
+        let hi = if preimage(hi).is_some_and(|e| e >= self.hi) { hi } else { hi.next_up() };
+        Self::raw(lo, hi)
     }
 
     /// e^x.
     pub fn exp(self) -> Self {
-        self.increasing(core_math::exp, is_zero).intersect(Self::NONNEGATIVE)
+        self.increasing(core_math::exp, |y| (y == 1.0).then_some(0.0)).intersect(Self::NONNEGATIVE)
     }
 
     /// 2^x.
     pub fn exp2(self) -> Self {
-        // Whole powers in the range of f64, subnormals included.
-        let exact = |x: f64| x.fract() == 0.0 && (-1074.0..=1023.0).contains(&x);
-        self.increasing(core_math::exp2, exact).intersect(Self::NONNEGATIVE)
+        // 2^k is a f64 for all whole k from -1074 to 1023.
+        let preimage = |y| is_power_of_two(y).then(|| core_math::log2(y));
+        self.increasing(core_math::exp2, preimage).intersect(Self::NONNEGATIVE)
     }
 
     /// 10^x.
     pub fn exp10(self) -> Self {
-        // 10^22 = 2^22 5^22 and 5^22 < 2^53 < 5^23.
-        let exact = |x: f64| x.fract() == 0.0 && (0.0..=22.0).contains(&x);
-        self.increasing(core_math::exp10, exact).intersect(Self::NONNEGATIVE)
+        self.increasing(core_math::exp10, decimal_exponent).intersect(Self::NONNEGATIVE)
     }
 
     /// e^x - 1.
     pub fn expm1(self) -> Self {
-        self.increasing(core_math::expm1, is_zero).intersect(Self { lo: -1.0, hi: f64::INFINITY })
+        self.increasing(core_math::expm1, zero_at_zero).intersect(Self { lo: -1.0, hi: f64::INFINITY })
     }
 
     /// The natural logarithm of the positive members.
     pub fn ln(self) -> Self {
-        self.logarithm(0.0, core_math::log, |x| x == 1.0)
+        self.logarithm(0.0, core_math::log, |y| (y == 0.0).then_some(1.0))
     }
 
     /// The binary logarithm of the positive members.
     pub fn log2(self) -> Self {
-        self.logarithm(0.0, core_math::log2, is_power_of_two)
+        let whole = |y: f64| y.fract() == 0.0 && (-1074.0..=1023.0).contains(&y);
+        self.logarithm(0.0, core_math::log2, |y| whole(y).then(|| core_math::exp2(y)))
     }
 
     /// The decimal logarithm of the positive members.
     pub fn log10(self) -> Self {
-        // The powers of ten that are f64s: x = 10^k, as exp10 returns them.
-        let exact = |x: f64| {
-            let k = core_math::log10(x);
-            (0.0..=22.0).contains(&k) && k.fract() == 0.0 && core_math::exp10(k) == x
-        };
-        self.logarithm(0.0, core_math::log10, exact)
+        let preimage = |y| Some(core_math::exp10(y)).filter(|x| decimal_exponent(*x) == Some(y));
+        self.logarithm(0.0, core_math::log10, preimage)
     }
 
     /// ln(1 + x) of the members greater than -1.
     pub fn log1p(self) -> Self {
-        self.logarithm(-1.0, core_math::log1p, is_zero)
+        self.logarithm(-1.0, core_math::log1p, zero_at_zero)
     }
 
     /// An increasing function whose domain is the reals above `pole`, where it goes to -inf.
-    fn logarithm(self, pole: f64, nearest: impl Fn(f64) -> f64, exact: impl Fn(f64) -> bool) -> Self {
+    fn logarithm(self, pole: f64, nearest: impl Fn(f64) -> f64, preimage: impl Fn(f64) -> Option<f64>) -> Self {
         if self.is_empty() || self.hi <= pole {
             return Self::EMPTY;
         }
         let at = |x: f64| if x == pole { f64::NEG_INFINITY } else { nearest(x) };
-        self.intersect(Self { lo: pole, hi: f64::INFINITY }).increasing(at, exact)
+        self.intersect(Self { lo: pole, hi: f64::INFINITY }).increasing(at, preimage)
     }
 
     /// arcsin x, of the members in [-1, 1].
     pub fn asin(self) -> Self {
-        self.intersect(Self { lo: -1.0, hi: 1.0 }).increasing(core_math::asin, is_zero)
+        self.intersect(Self { lo: -1.0, hi: 1.0 }).increasing(core_math::asin, zero_at_zero)
     }
 
     /// arccos x, of the members in [-1, 1].
     pub fn acos(self) -> Self {
         // Decreasing: -acos increases.
         let x = self.intersect(Self { lo: -1.0, hi: 1.0 });
-        -x.increasing(|x| -core_math::acos(x), |x| x == 1.0)
+        -x.increasing(|x| -core_math::acos(x), |y| (y == 0.0).then_some(1.0))
     }
 
     /// arctan x.
     pub fn atan(self) -> Self {
-        self.increasing(core_math::atan, is_zero).intersect(Self { lo: -Self::HALF_PI.hi, hi: Self::HALF_PI.hi })
+        self.increasing(core_math::atan, zero_at_zero).intersect(Self { lo: -Self::HALF_PI.hi, hi: Self::HALF_PI.hi })
     }
 
     /// The angle of the point (x, y) = (`x`, `self`) in (-pi, pi], as IEEE 1788 has it: the origin is outside the
@@ -123,27 +121,29 @@ impl Interval {
 
     /// The hyperbolic sine.
     pub fn sinh(self) -> Self {
-        self.increasing(core_math::sinh, is_zero)
+        self.increasing(core_math::sinh, zero_at_zero)
     }
 
     /// The hyperbolic cosine.
     pub fn cosh(self) -> Self {
-        self.abs().increasing(core_math::cosh, is_zero).intersect(Self { lo: 1.0, hi: f64::INFINITY })
+        self.abs()
+            .increasing(core_math::cosh, |y| (y == 1.0).then_some(0.0))
+            .intersect(Self { lo: 1.0, hi: f64::INFINITY })
     }
 
     /// The hyperbolic tangent.
     pub fn tanh(self) -> Self {
-        self.increasing(core_math::tanh, is_zero).intersect(Self { lo: -1.0, hi: 1.0 })
+        self.increasing(core_math::tanh, zero_at_zero).intersect(Self { lo: -1.0, hi: 1.0 })
     }
 
     /// The inverse hyperbolic sine.
     pub fn asinh(self) -> Self {
-        self.increasing(core_math::asinh, is_zero)
+        self.increasing(core_math::asinh, zero_at_zero)
     }
 
     /// The inverse hyperbolic cosine of the members in [1, inf].
     pub fn acosh(self) -> Self {
-        self.intersect(Self { lo: 1.0, hi: f64::INFINITY }).increasing(core_math::acosh, |x| x == 1.0)
+        self.intersect(Self { lo: 1.0, hi: f64::INFINITY }).increasing(core_math::acosh, |y| (y == 0.0).then_some(1.0))
     }
 
     /// The inverse hyperbolic tangent of the members in (-1, 1).
@@ -152,12 +152,20 @@ impl Interval {
             return Self::EMPTY;
         }
         let at = |x: f64| if x.abs() == 1.0 { x * f64::INFINITY } else { core_math::atanh(x) };
-        self.intersect(Self { lo: -1.0, hi: 1.0 }).increasing(at, is_zero)
+        self.intersect(Self { lo: -1.0, hi: 1.0 }).increasing(at, zero_at_zero)
     }
 }
 
-fn is_zero(x: f64) -> bool {
-    x == 0.0
+/// The preimages of functions that are 0 at 0 and take no other `f64` at a `f64` (Lindemann and Weierstrass).
+fn zero_at_zero(y: f64) -> Option<f64> {
+    (y == 0.0).then_some(0.0)
+}
+
+/// The k with `y` = 10^k, for 0 <= k <= 22: 10^22 = 2^22 5^22 and 5^22 < 2^53 < 5^23, so that no other power is a
+/// `f64`.
+fn decimal_exponent(y: f64) -> Option<f64> {
+    let k = core_math::log10(y);
+    (k.fract() == 0.0 && (0.0..=22.0).contains(&k) && core_math::exp10(k) == y).then_some(k)
 }
 
 /// Whether `x` > 0 is a power of two: one bit in the fraction of a subnormal, none in that of a normal number.

@@ -24,6 +24,9 @@ mod text;
 mod trigonometric;
 mod verdict;
 
+#[cfg(test)]
+mod tests;
+
 pub use affine::Affine;
 pub use decoration::{Decorated, Decoration};
 pub use text::decimal;

@@ -25,7 +25,7 @@ impl Interval {
         let divisor = q.gcd(&p.unsigned_abs());
         // |p| / divisor fits an i32 unless p = i32::MIN stays whole, which i64 holds.
         let (p, q) = ((i64::from(p) / i64::from(divisor)) as i32, q / divisor);
-        let x = if q % 2 == 0 { self.intersect(Self::NONNEGATIVE) } else { self };
+        let x = if q.is_multiple_of(2) { self.intersect(Self::NONNEGATIVE) } else { self };
         if x.is_empty() {
             return Self::EMPTY;
         }
@@ -156,12 +156,17 @@ fn estimate(x: f64, p: i32, q: u32) -> (f64, u32) {
     let (p, q) = (f64::from(p), f64::from(q));
     let y = p / q;
     let near = core_math::pow(x, y);
-    if near == 0.0 || near.is_infinite() {
-        // Out of range, where the result is too or within a factor 1 - 2^-43 of the threshold: at most 2^-1074, or at
-        // least 2^1024 less some 2^981, which is 2^10 units of 2^971.
-        return (near, if near == 0.0 { 1 } else { 1 << 11 });
+    if near == 0.0 {
+        // At most 2^-1075 (1 + 2^-43).
+        return (near, 1);
     }
-    let correction = (-y).mul_add(q, p) / q * core_math::log(x);
+    let log = core_math::log(x);
+    if near.is_infinite() {
+        // e^710 > 1.2 * 2^1024: surely out of range. Else at least the threshold 2^1024 - 2^970 less 2^-43 of it,
+        // which is 2^10 units of 2^971.
+        return (near, if y * log > 710.0 { 1 } else { 1 << 11 });
+    }
+    let correction = (-y).mul_add(q, p) / q * log;
     (near.mul_add(correction, near), if correction == 0.0 { 1 } else { 2 })
 }
 
@@ -182,5 +187,5 @@ fn power_real(x: f64, y: f64) -> (f64, f64) {
         }
     }
     let (down, up) = exact::widen(core_math::pow(x, y), 1);
-    (down.max(0.0), up)
+    if (x > 1.0) == (y > 0.0) { (down.max(1.0), up) } else { (down.max(0.0), up.min(1.0)) }
 }

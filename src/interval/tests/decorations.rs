@@ -1,0 +1,138 @@
+//! Decorations from the definitions of IEEE 1788, 8.8 and 11.
+
+use super::super::Decoration::{Com, Dac, Def, Ill, Trv};
+use super::super::{Decorated, Decoration, Interval, Verdict};
+use super::set;
+
+const INF: f64 = f64::INFINITY;
+
+fn bare(lo: f64, hi: f64) -> Decorated {
+    Decorated::new(set(lo, hi))
+}
+
+#[test]
+fn constructors_keep_the_invariant() {
+    assert_eq!(bare(0.0, 1.0).decoration(), Com);
+    assert_eq!(bare(0.0, INF).decoration(), Dac);
+    assert_eq!(Decorated::new(Interval::EMPTY).decoration(), Trv);
+    assert_eq!(Decorated::with(set(0.0, 1.0), Ill), Decorated::ILL);
+    assert_eq!(Decorated::with(set(0.0, INF), Com).decoration(), Dac);
+    assert_eq!(Decorated::with(set(0.0, 1.0), Def).to_string(), "[0, 1] def");
+    assert!(Ill < Trv && Trv < Def && Def < Dac && Dac < Com);
+}
+
+#[test]
+fn functions_of_one_argument() {
+    type Function = fn(Decorated) -> Decorated;
+    let table: &[(Function, f64, f64, Decoration)] = &[
+        (Decorated::sqrt, 0.0, 4.0, Com),
+        (Decorated::sqrt, -1.0, 4.0, Trv),
+        (Decorated::sqrt, 0.0, INF, Dac),
+        (Decorated::recip, 1.0, 2.0, Com),
+        (Decorated::recip, 0.0, 2.0, Trv),
+        (Decorated::ln, 5e-324, 2.0, Com),
+        (Decorated::ln, 0.0, 2.0, Trv),
+        (Decorated::exp, 0.0, 1000.0, Dac),
+        (Decorated::exp, 0.0, 700.0, Com),
+        (Decorated::tan, -1.5, 1.5, Com),
+        (Decorated::tan, 1.5, 1.6, Trv),
+        (Decorated::tan, 1.6, 4.7, Com),
+        (Decorated::tan, 1.6, 4.8, Trv),
+        (Decorated::sin, 0.0, INF, Dac),
+        (Decorated::asin, -1.0, 1.0, Com),
+        (Decorated::asin, -1.1, 1.0, Trv),
+        (Decorated::acosh, 1.0, 2.0, Com),
+        (Decorated::acosh, 0.9, 2.0, Trv),
+        (Decorated::atanh, -0.5, 1f64.next_down(), Com),
+        (Decorated::atanh, -0.5, 1.0, Trv),
+        (Decorated::log1p, -1.0, 1.0, Trv),
+        (Decorated::sign, -1.0, 1.0, Def),
+        (Decorated::sign, 0.0, 1.0, Def),
+        (Decorated::sign, 0.0, 0.0, Dac),
+        (Decorated::sign, 0.5, 1.0, Com),
+        (Decorated::floor, 1.2, 1.8, Com),
+        (Decorated::floor, 1.0, 1.8, Dac),
+        (Decorated::floor, 1.2, 2.0, Def),
+        (Decorated::floor, -0.5, 0.5, Def),
+        (Decorated::floor, 0.0, INF, Def),
+        (Decorated::ceil, 1.2, 1.8, Com),
+        (Decorated::ceil, 1.2, 2.0, Dac),
+        (Decorated::ceil, 1.0, 1.8, Def),
+        (Decorated::round, -0.25, 0.25, Com),
+        (Decorated::round, 0.5, 1.0, Dac),
+        (Decorated::round, 0.25, 0.5, Def),
+        (Decorated::round, -0.5, -0.5, Dac),
+        (Decorated::trunc, -0.5, 0.5, Com),
+        (Decorated::trunc, 1.0, 1.5, Dac),
+        (Decorated::trunc, -1.5, -1.0, Dac),
+        (Decorated::trunc, 0.0, 0.5, Com),
+        (Decorated::trunc, 0.5, 1.0, Def),
+        (|x| x.powi(-2), -1.0, 1.0, Trv),
+        (|x| x.powi(-2), 1.0, 2.0, Com),
+        (|x| x.pow_rational(2, 6), -1.0, 1.0, Com),
+        (|x| x.pow_rational(1, 6), -1.0, 1.0, Trv),
+        (|x| x.pow_rational(0, 2), -1.0, 1.0, Com),
+        (|x| -x, -1.0, INF, Dac),
+    ];
+    for (i, (function, lo, hi, decoration)) in table.iter().enumerate() {
+        assert_eq!(function(bare(*lo, *hi)).decoration(), *decoration, "row {i}: [{lo}, {hi}]");
+        assert_eq!(function(Decorated::with(set(*lo, *hi), Trv)).decoration(), Trv, "row {i}");
+        assert_eq!(function(Decorated::ILL), Decorated::ILL, "row {i}");
+        assert_eq!(function(Decorated::new(Interval::EMPTY)).decoration(), Trv, "row {i}");
+    }
+}
+
+#[test]
+fn functions_of_two_arguments() {
+    type Function = fn(Decorated, Decorated) -> Decorated;
+    let table: &[(Function, [f64; 4], Decoration)] = &[
+        (|x, y| x / y, [1.0, 2.0, 0.0, 1.0], Trv),
+        (|x, y| x / y, [1.0, 2.0, 0.5, 1.0], Com),
+        (|x, y| x * y, [1e200, 1e300, 1e200, 1e300], Dac),
+        (|x, y| x + y, [1.0, 2.0, 3.0, INF], Dac),
+        (Decorated::pow, [0.0, 1.0, 1.0, 2.0], Com),
+        (Decorated::pow, [0.0, 1.0, 0.0, 2.0], Trv),
+        (Decorated::pow, [-1.0, 1.0, 1.0, 2.0], Trv),
+        (Decorated::pow, [0.5, 1.0, -1.0, 2.0], Com),
+        (Decorated::atan2, [-1.0, 1.0, 0.5, 1.0], Com),
+        (Decorated::atan2, [-1.0, 1.0, -1.0, 1.0], Trv),
+        (Decorated::atan2, [-1.0, 1.0, -2.0, -1.0], Def),
+        (Decorated::atan2, [-1.0, 0.0, -2.0, -1.0], Def),
+        (Decorated::atan2, [0.0, 1.0, -2.0, -1.0], Dac),
+        (Decorated::atan2, [0.5, 1.0, -2.0, 1.0], Com),
+        (Decorated::atan2, [0.0, 1.0, 0.5, 1.0], Com),
+        (Decorated::modulo, [0.25, 0.5, 1.0, 1.0], Com),
+        (Decorated::modulo, [0.0, 0.5, 1.0, 1.0], Dac),
+        (Decorated::modulo, [0.5, 1.0, 1.0, 1.0], Def),
+        (Decorated::modulo, [0.5, 1.0, 0.0, 1.0], Trv),
+        (Decorated::modulo, [1.25, 1.5, -1.0, -1.0], Com),
+        (Decorated::less, [0.0, 1.0, 2.0, 3.0], Com),
+        (Decorated::less, [0.0, 1.0, 0.0, 0.0], Dac),
+        (Decorated::less, [0.0, 1.0, 1.0, 3.0], Def),
+        (Decorated::less_equal, [0.0, 1.0, 1.0, 3.0], Dac),
+        (Decorated::equal, [0.0, 0.0, 0.0, 0.0], Dac),
+        (Decorated::equal, [0.0, 0.0, 1.0, 2.0], Com),
+        (Decorated::equal, [0.0, 1.0, 1.0, 2.0], Def),
+        (Decorated::min, [0.0, 1.0, 1.0, 2.0], Com),
+        (|x, y| y.clamp(x, x), [0.0, 1.0, 1.0, 2.0], Com),
+        (|x, y| x.mul_add(y, y), [0.0, 1.0, 1.0, INF], Dac),
+    ];
+    for (i, (function, [a, b, c, d], decoration)) in table.iter().enumerate() {
+        let (x, y) = (bare(*a, *b), bare(*c, *d));
+        assert_eq!(function(x, y).decoration(), *decoration, "row {i}");
+        assert_eq!(function(x, Decorated::with(y.interval(), Trv)).decoration(), Trv, "row {i}");
+        assert_eq!(function(Decorated::ILL, y), Decorated::ILL, "row {i}");
+        assert_eq!(function(x, Decorated::new(Interval::EMPTY)).decoration(), Trv, "row {i}");
+    }
+}
+
+#[test]
+fn an_undecided_choice_is_defined_at_most() {
+    let (a, b) = (bare(0.0, 1.0), bare(3.0, 4.0).floor());
+    assert_eq!(Decorated::select(Verdict::Proved, a, b), a);
+    assert_eq!(Decorated::select(Verdict::Refuted, a, b), b);
+    assert_eq!(Decorated::select(Verdict::Unknown, a, b), Decorated::with(set(0.0, 4.0), Def));
+    let undefined = bare(-1.0, 1.0).sqrt();
+    assert_eq!(Decorated::select(Verdict::Unknown, a, undefined).decoration(), Trv);
+    assert_eq!(Decorated::select(Verdict::Proved, a, undefined), a);
+}
