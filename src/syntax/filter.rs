@@ -147,6 +147,8 @@ fn join(reporter: &mut Reporter<'_>, tokens: &[Lexeme]) -> Option<Vec<Lexeme>> {
         } else if side_by_side && last == Some(Token::Number) && lexeme.token == Token::Number {
             adjacent_numbers(reporter, tokens[i - 1], lexeme, calls.is_empty());
             good = false;
+        } else if param_range(tokens, i) && calls.is_empty() {
+            // No product with the range of a parameter: the grammar misses the `in`.
         } else if side_by_side && !(last == Some(Token::Name) && lexeme.token == Token::LeftParen) {
             out.push(Lexeme { token: Token::Juxtaposed, ..lexeme });
         }
@@ -166,14 +168,18 @@ fn join(reporter: &mut Reporter<'_>, tokens: &[Lexeme]) -> Option<Vec<Lexeme>> {
     good.then_some(out)
 }
 
-/// `x` or `×` behind a range and before the next one.
+/// `x` or `×` behind a range; no other name can stand there.
 fn is_box_sign(reporter: &Reporter<'_>, tokens: &[Lexeme], i: usize) -> bool {
     let sign = match tokens[i].token {
         Token::Cross => true,
         Token::Name => matches!(reporter.text_of(tokens[i]), "x" | "X"),
         _ => false,
     };
-    sign && tokens[i - 1].token.ends_operand() && tokens.get(i + 1).is_none_or(|t| t.token == Token::LeftBracket)
+    sign && tokens[i - 1].token.ends_operand()
+}
+
+fn param_range(tokens: &[Lexeme], i: usize) -> bool {
+    tokens[0].token == Token::Param && tokens[i].token == Token::LeftBracket
 }
 
 /// Whether the `=` at `i` follows a name that itself follows the call's bracket or a comma.

@@ -47,9 +47,6 @@ mod grammar {
 /// Past so many messages the rest is only counted.
 const MAX_REPORTED: usize = 100;
 
-/// Offsets are 32 bits wide.
-const MAX_BYTES: usize = u32::MAX as usize;
-
 /// Reads a file. Statements with errors are left out of the module; the messages come in the order of the text.
 /// An empty file is an empty module.
 pub fn parse(file: FileId, text: &str) -> (Module, Vec<Diagnostic>) {
@@ -100,7 +97,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
 
 /// The tokens of a text, with spellings of other languages reported and replaced.
 fn lex(reporter: &mut Reporter<'_>) -> Lexed {
-    if reporter.text.len() > MAX_BYTES {
+    if reporter.text.len() > token::MAX_BYTES {
         reporter.report(Diagnostic::error(code::FILE_TOO_LARGE, "this file is too large: 4 GiB or more"));
         return Lexed::default();
     }
