@@ -360,7 +360,7 @@ fn a_million_terms_are_flat() {
         assert_eq!(operands, 1_000_000);
         drop(expr);
         // About a second on a slow machine without optimisation; quadratic work would take hours.
-        assert!(begun.elapsed() < Duration::from_secs(20), "{sign:?}: {:?}", begun.elapsed());
+        assert!(begun.elapsed() < Duration::from_secs(60), "{sign:?}: {:?}", begun.elapsed());
     }
 }
 
@@ -389,7 +389,7 @@ fn long_inputs_of_errors_stay_linear() {
         let found = syntax::parse(file, &text).1;
         let shown = imp::diagnostic::render(&map, &found, false);
         let start: String = text.chars().take(12).collect();
-        assert!(begun.elapsed() < Duration::from_secs(20), "{start:?}: {:?}", begun.elapsed());
+        assert!(begun.elapsed() < Duration::from_secs(60), "{start:?}: {:?}", begun.elapsed());
         assert!(shown.len() < 200_000, "{start:?}: {} bytes of messages", shown.len());
     }
 }
