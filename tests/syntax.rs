@@ -327,6 +327,13 @@ fn nesting_is_capped() {
     for text in nested(200_000) {
         assert_eq!(tree(&text), code::TOO_DEEP);
     }
+    // The most nodes for one level, of which seven and the last name make `MAX_NODES`.
+    let rich = |n: usize| format!("{}x{}", "a or b and c < d + e * 2f(".repeat(n), ")".repeat(n));
+    let most = (syntax::MAX_NODES - 1) / 7;
+    assert!(!dump::expression(&syntax::parse_expression(FILE, &rich(most)).unwrap()).is_empty());
+    assert_eq!(tree(&rich(most + 1)), code::TOO_DEEP);
+    assert_eq!(tree(&rich(syntax::MAX_DEPTH)), code::TOO_DEEP);
+    assert_eq!(codes(&format!("let a = {}; let b = 2", rich(syntax::MAX_DEPTH))), [code::TOO_DEEP]);
     // Mixed: each bracket with what waits around it counts.
     assert_eq!(tree(&format!("{}x{}", "-(2^(".repeat(100), "))".repeat(100))), code::TOO_DEEP);
     assert_eq!(tree(&format!("{}x", "(".repeat(1_000_000))), code::BRACKET);

@@ -13,9 +13,7 @@ use imp::diagnostic::SourceMap;
 use imp::diagnostic::render;
 use imp::syntax;
 use imp::syntax::ast::Expr;
-use imp::syntax::ast::ExprKind;
 use imp::syntax::ast::Statement;
-use imp::syntax::ast::StatementKind;
 use imp::syntax::dump;
 
 const FILE: FileId = FileId(0);
@@ -178,54 +176,18 @@ fn inside(start: u32, end: u32, text: &str) {
 /// Every part lies in the whole.
 fn spans_of_expr(expr: &Expr, text: &str) {
     inside(expr.span.start, expr.span.end, text);
-    let visit = |part: &Expr| {
+    expr.parts(|part| {
         assert!(expr.span.start <= part.span.start && part.span.end <= expr.span.end);
         spans_of_expr(part, text);
-    };
-    match &expr.kind {
-        ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Text(_) => {}
-        ExprKind::List(parts) | ExprKind::And(parts) | ExprKind::Or(parts) => parts.iter().for_each(visit),
-        ExprKind::Relation { operands, .. } => operands.iter().for_each(visit),
-        ExprKind::Apply { args, .. } => args.iter().for_each(|a| visit(&a.value)),
-        ExprKind::Bars(inner) | ExprKind::Group(inner) | ExprKind::Neg(inner) | ExprKind::Not(inner) => visit(inner),
-        ExprKind::Sum { first, rest } => {
-            visit(first);
-            rest.iter().for_each(|(_, e)| visit(e));
-        }
-        ExprKind::Product { first, rest } => {
-            visit(first);
-            rest.iter().for_each(|(_, e)| visit(e));
-        }
-        ExprKind::Power { base, exponent } => {
-            visit(base);
-            visit(exponent);
-        }
-        ExprKind::If { condition, then, otherwise } => {
-            visit(condition);
-            visit(then);
-            visit(otherwise);
-        }
-    }
+    });
 }
 
 fn spans_of_statement(statement: &Statement, text: &str) {
     inside(statement.span.start, statement.span.end, text);
-    match &statement.kind {
-        StatementKind::Let { value, .. } => spans_of_expr(value, text),
-        StatementKind::Fn { body, .. } => spans_of_expr(body, text),
-        StatementKind::Param { value, .. } => spans_of_expr(value, text),
-        StatementKind::Shape { relation, condition, .. } => {
-            spans_of_expr(relation, text);
-            condition.iter().for_each(|c| spans_of_expr(c, text));
-        }
-        StatementKind::Domain { ranges } => {
-            ranges.iter().for_each(|(lo, hi)| {
-                spans_of_expr(lo, text);
-                spans_of_expr(hi, text);
-            });
-        }
-        StatementKind::Import { path_span, .. } => inside(path_span.start, path_span.end, text),
-    }
+    statement.kind.expressions(|expr| {
+        assert!(statement.span.start <= expr.span.start && expr.span.end <= statement.span.end);
+        spans_of_expr(expr, text);
+    });
 }
 
 /// The comments of a text without errors, in order: `#` stands nowhere else but in quotes.

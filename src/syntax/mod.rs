@@ -36,6 +36,7 @@ use crate::syntax::token::Lexeme;
 use crate::syntax::token::Token;
 
 pub use crate::syntax::filter::MAX_DEPTH;
+pub use crate::syntax::filter::MAX_NODES;
 pub use crate::syntax::functions::FUNCTIONS;
 pub use crate::syntax::layout::wants_more;
 
@@ -57,6 +58,9 @@ pub fn parse(file: FileId, text: &str) -> (Module, Vec<Diagnostic>) {
         let before = reporter.found.len();
         let kind = filter::filter(&mut reporter, &group.tokens)
             .and_then(|tokens| run(&mut reporter, &tokens, |r, input| parser.parse(r, input)));
+        if let Some(kind) = &kind {
+            kind.expressions(|expr| filter::nodes(&mut reporter, expr));
+        }
         if let Some(kind) = kind
             && reporter.found.len() == before
             && !group.faulty
@@ -89,6 +93,9 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
         let parser = grammar::ExpressionParser::new();
         run(&mut reporter, &tokens, |r, input| parser.parse(r, input))
     });
+    if let Some(expr) = &expr {
+        filter::nodes(&mut reporter, expr);
+    }
     match expr {
         Some(expr) if reporter.found.is_empty() => Ok(expr),
         _ => Err(finish(reporter.found)),
