@@ -6,10 +6,14 @@ use std::panic::AssertUnwindSafe;
 use std::panic::catch_unwind;
 use std::path::Path;
 
+use imp::diagnostic::FileId;
+use imp::diagnostic::SourceMap;
+use imp::diagnostic::render;
 use imp::graph;
 use imp::graph::Graph;
 use imp::interval::Interval;
 use imp::passes;
+use imp::syntax;
 
 /// Between input and expectation, alone on its line.
 const SEPARATOR: &str = "----\n";
@@ -83,6 +87,20 @@ fn rounds(input: &str) -> String {
     passes::run(&graph, &inputs).1.iter().map(|report| report.to_string()).collect()
 }
 
+/// The messages about a file, as the user sees them.
+fn syntax_errors(input: &str) -> String {
+    let mut map = SourceMap::default();
+    let file = map.add("test.imp", input);
+    render(&map, &syntax::parse(file, input).1, false)
+}
+
+/// The trees of a file without errors.
+fn syntax_trees(input: &str) -> String {
+    let (module, found) = syntax::parse(FileId(0), input);
+    assert!(found.is_empty(), "{found:?}");
+    syntax::dump::ast(&module)
+}
+
 #[test]
 fn graph() {
     check("graph", graph_text);
@@ -92,4 +110,12 @@ fn graph() {
 fn passes() {
     check("passes", rewritten);
     check("rounds", rounds);
+}
+
+#[test]
+fn syntax() {
+    check("syntax_errors", syntax_errors);
+    check("syntax_ast", syntax_trees);
+    check("syntax_tokens", syntax::dump::tokens);
+    check("syntax_format", |input| syntax::format::format(FileId(0), input).unwrap());
 }

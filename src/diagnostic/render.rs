@@ -69,7 +69,7 @@ impl<'m> Views<'m> {
             if files.iter().all(|(f, _)| *f != file) {
                 let source = map.get(file);
                 let spans = diagnostic.labels.iter().map(|l| l.span).filter(|s| s.file == file);
-                files.push((file, View::new(&source.name, &source.text, spans)));
+                files.push((file, View::new(&source.name, harmless(&source.text), spans)));
             }
         }
         Self { files }
@@ -83,13 +83,13 @@ impl<'m> Views<'m> {
         let labels = diagnostic.labels.iter().enumerate().filter_map(|(i, label)| {
             let range = self.view(label.span.file).ok()?.range(label.span);
             let style = if i == 0 { codespan::LabelStyle::Primary } else { codespan::LabelStyle::Secondary };
-            Some(codespan::Label::new(style, label.span.file, range).with_message(&label.text))
+            Some(codespan::Label::new(style, label.span.file, range).with_message(harmless(&label.text)))
         });
         codespan::Diagnostic::new(severity)
             .with_code(diagnostic.code)
-            .with_message(&diagnostic.title)
+            .with_message(harmless(&diagnostic.title))
             .with_labels(labels.collect())
-            .with_notes(diagnostic.help.iter().map(|h| format!("help: {h}")).collect())
+            .with_notes(diagnostic.help.iter().map(|h| format!("help: {}", harmless(h))).collect())
     }
 
     fn view(&self, file: FileId) -> Result<&View<'m>, Error> {
@@ -98,7 +98,8 @@ impl<'m> Views<'m> {
 }
 
 impl<'m> View<'m> {
-    fn new(name: &'m str, source: &'m str, spans: impl Iterator<Item = Span>) -> Self {
+    fn new(name: &'m str, whole: Cow<'m, str>, spans: impl Iterator<Item = Span>) -> Self {
+        let source: &str = &whole;
         let starts: Vec<usize> = line_starts(source).collect();
         // Line, its bounds, and the window shown of it.
         let mut cuts: Vec<(usize, Range<usize>, Range<usize>)> = Vec::new();
@@ -113,7 +114,8 @@ impl<'m> View<'m> {
             }
         }
         if cuts.is_empty() {
-            return Self { name, text: source.into(), starts, pieces: vec![(0..source.len(), 0)], hidden: Vec::new() };
+            let pieces = vec![(0..source.len(), 0)];
+            return Self { name, text: whole, starts, pieces, hidden: Vec::new() };
         }
         cuts.sort_by_key(|c| c.0);
         let mut text = String::new();
@@ -185,6 +187,19 @@ impl<'a> Files<'a> for Views<'_> {
     }
 }
 
+/// The text with characters that a terminal would obey (control codes, changes of writing direction) replaced by
+/// visible ones of the same length, so that offsets stay.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let stand_in = |c: char| match c {
+        '\t' | '\n' | '\r' => c,
+        '\0'..='\u{1F}' | '\u{7F}' => '?',
+        '\u{80}'..='\u{9F}' => '¤',
+        '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => '\u{FFFD}',
+        _ => c,
+    };
+    if text.chars().any(|c| stand_in(c) != c) { text.chars().map(stand_in).collect() } else { text.into() }
+}
+
 /// The line, counted from 0, that holds the byte.
 fn line_of(starts: &[usize], byte: usize) -> usize {
     starts.partition_point(|&start| start <= byte).saturating_sub(1)
@@ -240,6 +255,12 @@ mod tests {
             assert!(show("é\nab\n", start, end).contains("error[E0203]"));
         }
         assert!(show("", 0, 1).contains("a.imp:1:1"));
+    }
+
+    #[test]
+    fn terminals_are_not_commanded() {
+        let shown = show("let a = \u{1b}[31m\u{9b}\u{202e} 1", 8, 9);
+        assert!(shown.contains("let a = ?[31m¤\u{FFFD} 1"), "{shown}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Span;
 use crate::diagnostic::code;
 use crate::syntax::ast::Argument;
 use crate::syntax::ast::Expr;
@@ -217,11 +218,14 @@ pub fn repetition(r: &mut Reporter<'_>, exponent: &Expr) -> usize {
         _ => None,
     };
     count.unwrap_or_else(|| {
-        r.report(
-            Diagnostic::error(code::BAD_REPETITION, "a domain has two or three ranges")
-                .at(exponent.span, "this is how often the range is repeated")
-                .help("write `[a, b]^2` for a plane, `[a, b]^3` for space"),
-        );
+        r.report(bad_repetition(exponent.span));
         1
     })
+}
+
+/// A range is repeated by something else than 1, 2 or 3.
+pub fn bad_repetition(span: Span) -> Diagnostic {
+    Diagnostic::error(code::BAD_REPETITION, "a domain has two or three ranges")
+        .at(span, "this is how often the range is repeated")
+        .help("write `[a, b]^2` for a plane, `[a, b]^3` for space")
 }

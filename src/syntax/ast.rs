@@ -63,6 +63,63 @@ pub struct Expr {
     pub kind: ExprKind,
 }
 
+impl Expr {
+    /// Hands over the expressions that this one is directly made of, from left to right.
+    pub fn parts<'e>(&'e self, mut visit: impl FnMut(&'e Expr)) {
+        match &self.kind {
+            ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Text(_) => {}
+            ExprKind::List(parts) | ExprKind::And(parts) | ExprKind::Or(parts) => parts.iter().for_each(visit),
+            ExprKind::Relation { operands, .. } => operands.iter().for_each(visit),
+            ExprKind::Apply { args, .. } => args.iter().for_each(|argument| visit(&argument.value)),
+            ExprKind::Bars(inner) | ExprKind::Group(inner) | ExprKind::Neg(inner) | ExprKind::Not(inner) => {
+                visit(inner)
+            }
+            ExprKind::Sum { first, rest } => {
+                visit(first);
+                rest.iter().for_each(|(_, term)| visit(term));
+            }
+            ExprKind::Product { first, rest } => {
+                visit(first);
+                rest.iter().for_each(|(_, factor)| visit(factor));
+            }
+            ExprKind::Power { base, exponent } => {
+                visit(base);
+                visit(exponent);
+            }
+            ExprKind::If { condition, then, otherwise } => {
+                visit(condition);
+                visit(then);
+                visit(otherwise);
+            }
+        }
+    }
+}
+
+impl StatementKind {
+    /// Hands over the expressions of the statement, in the order of the text.
+    pub fn expressions<'s>(&'s self, mut visit: impl FnMut(&'s Expr)) {
+        match self {
+            StatementKind::Let { value, .. } => visit(value),
+            StatementKind::Fn { params, body, .. } => {
+                params.iter().filter_map(|parameter| parameter.default.as_ref()).for_each(&mut visit);
+                visit(body);
+            }
+            StatementKind::Param { value, range, .. } => {
+                visit(value);
+                range.iter().for_each(|(lo, hi)| [lo, hi].into_iter().for_each(&mut visit));
+            }
+            StatementKind::Shape { relation, condition, .. } => {
+                visit(relation);
+                condition.iter().for_each(visit);
+            }
+            StatementKind::Domain { ranges } => {
+                ranges.iter().for_each(|(lo, hi)| [lo, hi].into_iter().for_each(&mut visit));
+            }
+            StatementKind::Import { .. } => {}
+        }
+    }
+}
+
 #[derive(Debug, Clone)]
 pub enum ExprKind {
     /// The real number written, exactly.

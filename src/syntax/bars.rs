@@ -16,36 +16,35 @@ use crate::syntax::token::Token;
 /// Replaces every `Bar` by `BarOpen` or `BarClose`; reports bars that pair in no way or in several, and then
 /// answers `false`. Brackets must be matched.
 pub fn pair(reporter: &mut Reporter<'_>, tokens: &mut [Lexeme]) -> bool {
-    let mut good = true;
+    let before = reporter.found.len();
+    let mut lonely = Vec::new();
+    stretches(tokens, |tokens, bars| settle(reporter, tokens, bars, &mut lonely));
+    if !lonely.is_empty() {
+        unpaired(reporter, tokens, &lonely);
+    }
+    reporter.found.len() == before
+}
+
+/// Hands over the bars between which nothing separates, stretch by stretch.
+fn stretches(tokens: &mut [Lexeme], mut settle: impl FnMut(&mut [Lexeme], &[usize])) {
     // The bars of the stretch at hand, for each open bracket.
     let mut open: Vec<Vec<usize>> = vec![Vec::new()];
     for i in 0..tokens.len() {
-        match tokens[i].token {
+        let token = tokens[i].token;
+        match token {
             Token::LeftParen | Token::LeftBracket => open.push(Vec::new()),
-            Token::RightParen | Token::RightBracket => {
-                let bars = open.pop().unwrap_or_default();
-                good &= settle(reporter, tokens, &bars);
-                if open.is_empty() {
-                    open.push(Vec::new());
-                }
-            }
-            Token::Bar => {
+            Token::RightParen | Token::RightBracket => settle(tokens, &open.pop().unwrap_or_default()),
+            Token::Bar => open.last_mut().into_iter().for_each(|bars| bars.push(i)),
+            _ if separates(token) => {
                 if let Some(bars) = open.last_mut() {
-                    bars.push(i);
-                }
-            }
-            token if separates(token) => {
-                if let Some(bars) = open.last_mut().map(std::mem::take) {
-                    good &= settle(reporter, tokens, &bars);
+                    settle(tokens, bars);
+                    bars.clear();
                 }
             }
             _ => {}
         }
     }
-    for bars in open {
-        good &= settle(reporter, tokens, &bars);
-    }
-    good
+    open.iter().for_each(|bars| settle(tokens, bars));
 }
 
 /// Tokens that cannot stand between a bar and its partner without a bracket around them.
@@ -67,26 +66,37 @@ fn follows(bar: &Bar, this: usize, next: usize) -> bool {
     !(bar.touches_next && this == OPEN && next == CLOSE)
 }
 
-fn settle(reporter: &mut Reporter<'_>, tokens: &mut [Lexeme], at: &[usize]) -> bool {
+/// Turns the bars of one stretch into opening and closing ones. Those that pair in no way go to `lonely`.
+fn settle(reporter: &mut Reporter<'_>, tokens: &mut [Lexeme], at: &[usize], lonely: &mut Vec<usize>) {
     if at.is_empty() {
-        return true;
+        return;
     }
     let bars: Vec<Bar> = at.iter().map(|&i| look_around(tokens, i)).collect();
     let viable = viable_states(&bars);
-    let unique = viable.iter().all(|v| v[OPEN].count_ones() + v[CLOSE].count_ones() == 1);
-    if unique {
+    if viable[0] == [0, 0] {
+        lonely.extend(at);
+    } else if viable.iter().all(|v| v[OPEN].count_ones() + v[CLOSE].count_ones() == 1) {
         for (v, &i) in viable.iter().zip(at) {
             tokens[i].token = if v[OPEN] != 0 { Token::BarOpen } else { Token::BarClose };
         }
-        return true;
-    }
-    let readings = if viable[0] == [0, 0] {
-        Vec::new()
     } else {
-        [CLOSE, OPEN].iter().filter_map(|&first| reading(reporter, tokens, at, &walk(&bars, &viable, first))).collect()
-    };
-    report(reporter, tokens, at, viable[0] == [0, 0], &readings);
-    false
+        let ways = [CLOSE, OPEN].map(|first| walk(&bars, &viable, first));
+        let readings: Vec<String> = ways.iter().filter_map(|ways| reading(reporter, tokens, at, ways)).collect();
+        let mut diagnostic = point_at(
+            reporter,
+            Diagnostic::error(code::BARS, "these bars pair in more than one way"),
+            tokens,
+            at,
+            "which bar belongs to which?",
+        );
+        for reading in &readings {
+            diagnostic = diagnostic.help(format!("write `{reading}`"));
+        }
+        if readings.is_empty() {
+            diagnostic = diagnostic.help("write `abs(...)` for the absolute value");
+        }
+        reporter.report(diagnostic);
+    }
 }
 
 fn look_around(tokens: &[Lexeme], i: usize) -> Bar {
@@ -164,29 +174,30 @@ fn reading(reporter: &Reporter<'_>, tokens: &[Lexeme], at: &[usize], ways: &[usi
     one_line(&out)
 }
 
-fn report(reporter: &mut Reporter<'_>, tokens: &[Lexeme], at: &[usize], none: bool, readings: &[String]) {
-    let title = if none { "these bars do not pair" } else { "these bars pair in more than one way" };
-    let mut diagnostic = Diagnostic::error(code::BARS, title);
-    const SHOWN: usize = 8;
-    for (k, &i) in at.iter().take(SHOWN).enumerate() {
-        let text = if k > 0 {
-            ""
-        } else if at.len() == 1 {
-            "this bar has no partner"
-        } else {
-            "which bar belongs to which?"
-        };
-        diagnostic = diagnostic.at(reporter.at(tokens[i]), text);
-    }
-    for reading in readings {
-        diagnostic = diagnostic.help(format!("write `{reading}`"));
-    }
-    if readings.is_empty() {
-        diagnostic = diagnostic.help("write `abs(...)` for the absolute value");
-    }
-    let doubled = at.windows(2).any(|w| w[0] + 1 == w[1] && tokens[w[0]].end == tokens[w[1]].start);
-    if none && doubled {
+fn unpaired(reporter: &mut Reporter<'_>, tokens: &[Lexeme], at: &[usize]) {
+    let (title, label) = match at {
+        [_] => ("this bar has no partner", ""),
+        _ => ("these bars do not pair", "no bar closes what another opens"),
+    };
+    let mut diagnostic = point_at(reporter, Diagnostic::error(code::BARS, title), tokens, at, label)
+        .help("write `abs(...)` for the absolute value");
+    if at.windows(2).any(|w| w[0] + 1 == w[1] && tokens[w[0]].end == tokens[w[1]].start) {
         diagnostic = diagnostic.help("if `||` means a choice, write `or`");
     }
     reporter.report(diagnostic);
+}
+
+/// Labels the first few of the bars, and the first of them with `text`.
+fn point_at(
+    reporter: &Reporter<'_>,
+    diagnostic: Diagnostic,
+    tokens: &[Lexeme],
+    at: &[usize],
+    text: &str,
+) -> Diagnostic {
+    const SHOWN: usize = 8;
+    at.iter()
+        .take(SHOWN)
+        .enumerate()
+        .fold(diagnostic, |diagnostic, (k, &i)| diagnostic.at(reporter.at(tokens[i]), if k == 0 { text } else { "" }))
 }

@@ -14,10 +14,11 @@ use crate::syntax::ast::Sign;
 use crate::syntax::ast::Statement;
 use crate::syntax::ast::StatementKind;
 use crate::syntax::filter;
-use crate::syntax::groups;
+use crate::syntax::layout;
 use crate::syntax::report::Reporter;
 use crate::syntax::token::Lexeme;
 use crate::syntax::token::Token;
+use crate::syntax::token::lex;
 
 /// One token a line, as the grammar reads them: line and column, kind, text; statements apart by a blank line.
 /// Products without a sign, the ways that bars face and named arguments show in the kind. A statement whose brackets
@@ -26,7 +27,7 @@ pub fn tokens(text: &str) -> String {
     let mut reporter = Reporter::new(FileId(0), text);
     let mut out = String::new();
     let mut lines = Lines::default();
-    for group in groups(&mut reporter) {
+    for group in layout::statements(&mut reporter, &lex(text)) {
         if !out.is_empty() {
             out.push('\n');
         }

@@ -4,6 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Span;
 use crate::diagnostic::code;
 use crate::diagnostic::did_you_mean;
+use crate::syntax::actions;
 use crate::syntax::report::Reporter;
 use crate::syntax::token::Lexeme;
 use crate::syntax::token::Token;
@@ -28,6 +29,23 @@ impl Stop<'_> {
         self.tokens.get(self.at).copied()
     }
 
+    /// Where an expression that begins at the stop can reach at most: the end of the bracket, argument or statement.
+    fn reach(&self) -> u32 {
+        let mut depth = 0usize;
+        let mut end = self.found().map_or(0, |l| l.end);
+        for lexeme in &self.tokens[self.at..] {
+            match lexeme.token {
+                Token::LeftParen | Token::LeftBracket => depth += 1,
+                Token::RightParen | Token::RightBracket if depth > 0 => depth -= 1,
+                Token::RightParen | Token::RightBracket => break,
+                Token::Comma | Token::Where if depth == 0 => break,
+                _ => {}
+            }
+            end = lexeme.end;
+        }
+        end
+    }
+
     fn before(&self) -> Option<Lexeme> {
         // The sign of a product without a sign is nowhere in the text.
         let behind = self.tokens[..self.at].iter().rev();
@@ -37,8 +55,8 @@ impl Stop<'_> {
 
 /// The message for a statement that the grammar could not read.
 pub fn explain(r: &Reporter<'_>, stop: &Stop<'_>) -> Diagnostic {
-    let diagnostic = header(r, stop).or_else(|| missing_operand(r, stop)).unwrap_or_else(|| misplaced(r, stop));
-    misspelt_opener(r, stop, diagnostic)
+    let special = misspelt_opener(r, stop).or_else(|| second_statement(r, stop)).or_else(|| header(r, stop));
+    special.or_else(|| missing_operand(r, stop)).unwrap_or_else(|| misplaced(r, stop))
 }
 
 /// The place of the stop: the token found, or the last one where the statement ended too early.
@@ -62,11 +80,13 @@ fn header(r: &Reporter<'_>, stop: &Stop<'_>) -> Option<Diagnostic> {
         Token::Import => ("import \"FILE\"", &["TEXT"][..]),
         _ => return None,
     };
-    // Past its fixed parts a statement is an expression like any other.
-    let missing = wanted.iter().find(|w| stop.expects(w) && !(**w == "NAME" && stop.expects("NUMBER")))?;
-    if stop.expects("NUMBER") || (stop.expects("+") && !matches!(*missing, "in" | ":")) {
-        return None;
-    }
+    // Past its fixed parts a statement is an expression like any other, where an `=` may be due again.
+    let past = |sign: &str| match sign {
+        "=" => stop.tokens[..stop.at].iter().any(|l| l.token == Token::Equal),
+        ":" => stop.tokens[..stop.at].iter().any(|l| l.token == Token::Colon),
+        _ => stop.expects("NUMBER"),
+    };
+    let missing = wanted.iter().find(|w| stop.expects(w) && !past(w))?;
     let word = r.text_of(stop.tokens[0]);
     let span = place(r, stop);
     if let Some(found) = stop.found()
@@ -77,7 +97,9 @@ fn header(r: &Reporter<'_>, stop: &Stop<'_>) -> Option<Diagnostic> {
         let title = format!("`{name}` is a word of the language and cannot be a name");
         return Some(Diagnostic::error(code::RESERVED_WORD, title).at(span, "choose another name"));
     }
-    if stop.found().is_none() || *missing != "in" {
+    let range = stop.found().is_some_and(|l| l.token == Token::LeftBracket);
+    if range || *missing != "in" {
+        let model = if *missing == "BOX_TIMES" { "domain [LOW, HIGH] x [LOW, HIGH]" } else { model };
         let what = match *missing {
             "NAME" => "a name".to_string(),
             "TEXT" => "a file name in quotes".to_string(),
@@ -100,8 +122,14 @@ fn missing_operand(r: &Reporter<'_>, stop: &Stop<'_>) -> Option<Diagnostic> {
         return None;
     }
     let error = |title: String| Diagnostic::error(code::MISSING_OPERAND, title);
-    let quote = |lexeme: Lexeme| format!("`{}`", r.text_of(lexeme));
+    let quote = |lexeme: Lexeme| r.quote(lexeme);
     let (before, found) = (stop.before(), stop.found());
+    if let Some(found) = found
+        && before.is_some_and(|l| l.token == Token::Caret)
+        && !stop.expects("NAME")
+    {
+        return Some(actions::bad_repetition(r.at(found)));
+    }
     Some(match (before, found) {
         (Some(before), Some(found)) if matches!(found.token, Token::If | Token::Not) => {
             let word = r.text_of(found);
@@ -109,13 +137,10 @@ fn missing_operand(r: &Reporter<'_>, stop: &Stop<'_>) -> Option<Diagnostic> {
             error(format!("{what} inside a formula needs brackets"))
                 .at(r.at(found), format!("`{word}` reaches as far right as it can"))
                 .at(r.at(before), "and would stand under this")
-                .help(format!("put `(` before `{word}` and `)` where it ends"))
-        }
-        (_, Some(found)) if found.token.is_keyword() && found.token.opens_statement() => {
-            let word = r.text_of(found);
-            error(format!("`{word}` begins a statement and cannot stand inside one"))
-                .at(r.at(found), "")
-                .help("put it on a line of its own")
+                .help(match r.excerpt(found.start, stop.reach()) {
+                    Some(inner) => format!("write `({inner})`"),
+                    None => format!("put `(` before `{word}` and `)` where it ends"),
+                })
         }
         (Some(before), None) => {
             error(format!("nothing follows {}", quote(before))).at(r.at(before), "this needs something on its right")
@@ -129,6 +154,7 @@ fn missing_operand(r: &Reporter<'_>, stop: &Stop<'_>) -> Option<Diagnostic> {
             {
                 nothing_left(r, found)
             }
+            (_, Token::Plus) => nothing_left(r, found),
             _ => error(format!("nothing stands between {} and {}", quote(before), quote(found)))
                 .at(r.at(found), "")
                 .at(r.at(before), "this needs something on its right"),
@@ -157,17 +183,14 @@ fn misplaced(r: &Reporter<'_>, stop: &Stop<'_>) -> Diagnostic {
     };
     // Side by side: the second operand is what the user sees.
     let shown = if found.token == Token::Juxtaposed { stop.tokens.get(stop.at + 1).copied() } else { Some(found) };
-    let text = r.text_of(shown.unwrap_or(found));
+    let text = r.quote(shown.unwrap_or(found));
     let error = |title: String| Diagnostic::error(code::UNEXPECTED, title).at(span, "");
     match found.token {
-        Token::Juxtaposed if stop.expects("BOX_TIMES") => {
-            error("the ranges of a domain are joined by `x`".into()).help("write `domain [a, b] x [c, d]`")
-        }
-        Token::Comma if stop.expects("BOX_TIMES") => {
-            error("the ranges of a domain are joined by `x`".into()).help("write `domain [a, b] x [c, d]`")
-        }
+        // The range of a domain or of a parameter: a list would also take other numbers of items.
+        Token::RightBracket if stop.expects(",") && !stop.expects("]") => two_ends(span),
+        Token::Comma if stop.expects("]") && !stop.expects(",") => two_ends(span),
         Token::Then | Token::Else if !stop.tokens[..stop.at].iter().any(|l| l.token == Token::If) => {
-            error(format!("this `{text}` belongs to no `if`")).help("a choice is written `if c then a else b`")
+            error(format!("this {text} belongs to no `if`")).help("a choice is written `if c then a else b`")
         }
         _ if stop.expects("then") && !found.token.is_relation() => lacks(span, "this `if` lacks its `then`"),
         _ if stop.expects("else") && found.token != Token::Then => lacks(span, "this `if` lacks its `else`"),
@@ -180,13 +203,13 @@ fn misplaced(r: &Reporter<'_>, stop: &Stop<'_>) -> Diagnostic {
         Token::Comma => error("a comma separates arguments inside brackets only".into())
             .help("write a list as `[a, b]`; separate statements by a new line or `;`"),
         Token::Superscript | Token::Caret => {
-            error(format!("a raised power is followed by `{text}`")).help("put brackets around one of the powers")
+            error(format!("a raised power is followed by {text}")).help("put brackets around one of the powers")
         }
         Token::Text => error("text can only be an argument, such as a file name".into()),
-        token if token.is_relation() => error(format!("`{text}` cannot stand here"))
+        token if token.is_relation() => error(format!("{text} cannot stand here"))
             .help("put the relation in brackets, or give it a name with `let`"),
-        token if token.is_keyword() => error(format!("`{text}` cannot stand inside a formula")),
-        _ => error(format!("`{text}` cannot stand here")),
+        token if token.is_keyword() => error(format!("{text} cannot stand inside a formula")),
+        _ => error(format!("{text} cannot stand here")),
     }
 }
 
@@ -194,14 +217,29 @@ fn lacks(span: Span, title: &str) -> Diagnostic {
     Diagnostic::error(code::UNEXPECTED, title).at(span, "").help("a choice is written `if c then a else b`")
 }
 
+fn two_ends(span: Span) -> Diagnostic {
+    Diagnostic::error(code::UNEXPECTED, "a range has two ends").at(span, "").help("write `[LOW, HIGH]`")
+}
+
+/// A word that opens statements inside of one.
+fn second_statement(r: &Reporter<'_>, stop: &Stop<'_>) -> Option<Diagnostic> {
+    let found = stop.found()?;
+    let past_names = !stop.expects("NAME") || stop.expects("NUMBER");
+    (found.token.opens_statement() && past_names).then(|| {
+        let title = format!("`{}` begins a statement and cannot stand inside one", r.text_of(found));
+        Diagnostic::error(code::UNEXPECTED, title).at(r.at(found), "").help("put it on a line of its own")
+    })
+}
+
 /// `surfce s: ...`: the statement begins with two names, the first of which is nearly a word that opens statements.
-fn misspelt_opener(r: &Reporter<'_>, stop: &Stop<'_>, diagnostic: Diagnostic) -> Diagnostic {
-    let [first, sign, second, ..] = stop.tokens else { return diagnostic };
+fn misspelt_opener(r: &Reporter<'_>, stop: &Stop<'_>) -> Option<Diagnostic> {
+    let [first, sign, second, ..] = stop.tokens else { return None };
     let names = first.token == Token::Name
         && sign.token == Token::Juxtaposed
         && matches!(second.token, Token::Name | Token::LeftBracket);
-    match did_you_mean(r.text_of(*first), OPENERS) {
-        Some(word) if names => diagnostic.help(format!("did you mean `{word}`?")).at(r.at(*first), "begins with this"),
-        _ => diagnostic,
-    }
+    let word = r.text_of(*first);
+    let meant = did_you_mean(word, OPENERS).filter(|_| names)?;
+    let title = format!("`{word}` does not begin a statement");
+    let diagnostic = Diagnostic::error(code::UNEXPECTED, title).at(r.at(*first), "");
+    Some(diagnostic.help(format!("did you mean `{meant}`?")))
 }

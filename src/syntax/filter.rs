@@ -4,17 +4,23 @@
 //! With these decided here, the grammar is LR(1) without conflicts.
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Span;
 use crate::diagnostic::code;
+use crate::syntax::ast::Expr;
 use crate::syntax::bars;
 use crate::syntax::functions;
 use crate::syntax::report::Reporter;
 use crate::syntax::token::Lexeme;
 use crate::syntax::token::Token;
 
-/// How deeply brackets, signs, powers and choices may nest in total. Each adds a bounded number of levels to the AST
-/// (at most twelve: choice, or, and, not, relation, sum, product, sign, juxtaposition, power, call, argument), so that
-/// whoever walks the AST recursively stays below about 3000 frames.
+/// How deeply brackets, signs, powers and choices may nest in total. Each adds a bounded number of nodes to the AST
+/// (at most eight: or, and, relation, sum, product, juxtaposition, power, call), so that it can be dropped in a small
+/// stack.
 pub const MAX_DEPTH: usize = 256;
+
+/// How many nodes of the AST may lie one in the other. Few formulas come near: Horner's scheme takes three nodes for a
+/// bracket. Who walks the AST recursively has 2 KiB for a node in the smallest stacks in use, which are of 2 MiB.
+pub const MAX_NODES: usize = 3 * MAX_DEPTH;
 
 /// The tokens that the grammar reads, or `None` where they cannot be given to it (the reason is reported).
 pub fn filter(reporter: &mut Reporter<'_>, tokens: &[Lexeme]) -> Option<Vec<Lexeme>> {
@@ -117,15 +123,30 @@ fn depth(reporter: &mut Reporter<'_>, tokens: &[Lexeme]) -> Option<()> {
         }
         last = token;
         if outside + here.tight + here.nots + here.ifs > MAX_DEPTH {
-            reporter.report(
-                Diagnostic::error(code::TOO_DEEP, "this formula is nested too deeply")
-                    .at(reporter.at(*lexeme), format!("more than {MAX_DEPTH} levels"))
-                    .help("give inner parts names with `let`"),
-            );
+            reporter.report(too_deep(reporter.at(*lexeme), format!("more than {MAX_DEPTH} levels")));
             return None;
         }
     }
     Some(())
+}
+
+/// Refuses an expression with more than [`MAX_NODES`] nodes one in the other.
+pub fn nodes(reporter: &mut Reporter<'_>, expr: &Expr) {
+    let mut open = vec![(expr, 1)];
+    while let Some((expr, depth)) = open.pop() {
+        if depth > MAX_NODES {
+            let span = reporter.span(expr.span.start, expr.span.end);
+            return reporter
+                .report(too_deep(span, format!("more than {MAX_NODES} operations, each inside of another")));
+        }
+        expr.parts(|part| open.push((part, depth + 1)));
+    }
+}
+
+fn too_deep(span: Span, label: String) -> Diagnostic {
+    Diagnostic::error(code::TOO_DEEP, "this formula is nested too deeply")
+        .at(span, label)
+        .help("give inner parts names with `let`")
 }
 
 /// Puts in products without a sign, box products and named arguments.
@@ -147,6 +168,8 @@ fn join(reporter: &mut Reporter<'_>, tokens: &[Lexeme]) -> Option<Vec<Lexeme>> {
         } else if side_by_side && last == Some(Token::Number) && lexeme.token == Token::Number {
             adjacent_numbers(reporter, tokens[i - 1], lexeme, calls.is_empty());
             good = false;
+        } else if param_range(tokens, i) && calls.is_empty() {
+            // No product with the range of a parameter: the grammar misses the `in`.
         } else if side_by_side && !(last == Some(Token::Name) && lexeme.token == Token::LeftParen) {
             out.push(Lexeme { token: Token::Juxtaposed, ..lexeme });
         }
@@ -166,14 +189,18 @@ fn join(reporter: &mut Reporter<'_>, tokens: &[Lexeme]) -> Option<Vec<Lexeme>> {
     good.then_some(out)
 }
 
-/// `x` or `×` behind a range and before the next one.
+/// `x` or `×` behind a range; no other name can stand there.
 fn is_box_sign(reporter: &Reporter<'_>, tokens: &[Lexeme], i: usize) -> bool {
     let sign = match tokens[i].token {
         Token::Cross => true,
         Token::Name => matches!(reporter.text_of(tokens[i]), "x" | "X"),
         _ => false,
     };
-    sign && tokens[i - 1].token.ends_operand() && tokens.get(i + 1).is_none_or(|t| t.token == Token::LeftBracket)
+    sign && tokens[i - 1].token.ends_operand()
+}
+
+fn param_range(tokens: &[Lexeme], i: usize) -> bool {
+    tokens[0].token == Token::Param && tokens[i].token == Token::LeftBracket
 }
 
 /// Whether the `=` at `i` follows a name that itself follows the call's bracket or a comma.

@@ -36,6 +36,7 @@ use crate::syntax::token::Lexeme;
 use crate::syntax::token::Token;
 
 pub use crate::syntax::filter::MAX_DEPTH;
+pub use crate::syntax::filter::MAX_NODES;
 pub use crate::syntax::functions::FUNCTIONS;
 pub use crate::syntax::layout::wants_more;
 
@@ -47,9 +48,6 @@ mod grammar {
 /// Past so many messages the rest is only counted.
 const MAX_REPORTED: usize = 100;
 
-/// Offsets are 32 bits wide.
-const MAX_BYTES: usize = u32::MAX as usize;
-
 /// Reads a file. Statements with errors are left out of the module; the messages come in the order of the text.
 /// An empty file is an empty module.
 pub fn parse(file: FileId, text: &str) -> (Module, Vec<Diagnostic>) {
@@ -60,6 +58,9 @@ pub fn parse(file: FileId, text: &str) -> (Module, Vec<Diagnostic>) {
         let before = reporter.found.len();
         let kind = filter::filter(&mut reporter, &group.tokens)
             .and_then(|tokens| run(&mut reporter, &tokens, |r, input| parser.parse(r, input)));
+        if let Some(kind) = &kind {
+            kind.expressions(|expr| filter::nodes(&mut reporter, expr));
+        }
         if let Some(kind) = kind
             && reporter.found.len() == before
             && !group.faulty
@@ -92,6 +93,9 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
         let parser = grammar::ExpressionParser::new();
         run(&mut reporter, &tokens, |r, input| parser.parse(r, input))
     });
+    if let Some(expr) = &expr {
+        filter::nodes(&mut reporter, expr);
+    }
     match expr {
         Some(expr) if reporter.found.is_empty() => Ok(expr),
         _ => Err(finish(reporter.found)),
@@ -100,7 +104,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
 
 /// The tokens of a text, with spellings of other languages reported and replaced.
 fn lex(reporter: &mut Reporter<'_>) -> Lexed {
-    if reporter.text.len() > MAX_BYTES {
+    if reporter.text.len() > token::MAX_BYTES {
         reporter.report(Diagnostic::error(code::FILE_TOO_LARGE, "this file is too large: 4 GiB or more"));
         return Lexed::default();
     }

@@ -36,7 +36,7 @@ fn foreign(reporter: &Reporter<'_>, lexeme: Lexeme) -> (Diagnostic, Option<Token
         "==" | "===" | ":=" => ("write `=`", Some(Token::Equal)),
         "!==" | "<>" => ("write `!=`", Some(Token::NotEqual)),
         "&" | "&&" => ("write `and`", Some(Token::And)),
-        "!" | "~" => ("write `not`", None),
+        "!" | "~" => ("for the opposite of a condition write `not`", None),
         "%" => ("for the remainder write `mod(a, b)`", Some(Token::Star)),
         "{" => ("brackets are `(` `)` here; a condition follows the word `where`", Some(Token::LeftParen)),
         "}" => ("brackets are `(` `)` here", Some(Token::RightParen)),
@@ -55,7 +55,7 @@ fn foreign(reporter: &Reporter<'_>, lexeme: Lexeme) -> (Diagnostic, Option<Token
 fn unknown(reporter: &Reporter<'_>, lexeme: Lexeme) -> Diagnostic {
     const SHOWN: usize = 8;
     let text = reporter.text_of(lexeme);
-    let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
+    let mut shown: String = text.chars().take(SHOWN).map(visible).collect();
     if text.chars().nth(SHOWN).is_some() {
         shown.push_str("...");
     }
@@ -74,6 +74,13 @@ fn unknown(reporter: &Reporter<'_>, lexeme: Lexeme) -> Diagnostic {
         Some('\u{300}'..='\u{36F}') => diagnostic.help("write the letter without its combining mark"),
         _ => diagnostic.help("names are letters, digits, `_` and a trailing `'`"),
     }
+}
+
+/// The character itself where it can be seen on its own.
+fn visible(c: char) -> String {
+    let unseen = c.is_control()
+        || matches!(c, '\u{300}'..='\u{36F}' | '\u{200C}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
+    if unseen { c.escape_unicode().to_string() } else { c.to_string() }
 }
 
 fn hexadecimal(reporter: &Reporter<'_>, lexeme: Lexeme) -> Diagnostic {

@@ -35,6 +35,16 @@ impl<'t> Reporter<'t> {
         self.slice(lexeme.start, lexeme.end)
     }
 
+    /// The token's text for the middle of a message: shortened where nobody would read it.
+    pub fn quote(&self, lexeme: Lexeme) -> String {
+        const LONGEST: usize = 40;
+        let text = self.text_of(lexeme);
+        match text.char_indices().nth(LONGEST) {
+            None => format!("`{text}`"),
+            Some((end, _)) => format!("`{}...`", &text[..end]),
+        }
+    }
+
     pub fn report(&mut self, diagnostic: Diagnostic) {
         self.found.push(diagnostic);
     }
@@ -45,7 +55,7 @@ impl<'t> Reporter<'t> {
     }
 }
 
-/// `text` with its white space collapsed, or `None` where it is too long (or holds a comment) for an offered edit.
+/// `text` with its white space collapsed to single blanks, or `None` where it is too long (or holds a comment) for an offered edit.
 pub fn one_line(text: &str) -> Option<String> {
     const LIMIT: usize = 80;
     if text.len() > LIMIT || text.contains('#') {
@@ -53,6 +63,7 @@ pub fn one_line(text: &str) -> Option<String> {
     }
     let inner = text.split_whitespace().collect::<Vec<_>>().join(" ");
     // A blank at either end separates factors; it must survive.
-    let lead = if text.starts_with(char::is_whitespace) { " " } else { "" };
-    Some(format!("{lead}{inner}"))
+    let blank = |is: bool| if is { " " } else { "" };
+    let (lead, tail) = (text.starts_with(char::is_whitespace), text.ends_with(char::is_whitespace));
+    Some(format!("{}{inner}{}", blank(lead), blank(tail && !inner.is_empty())))
 }

@@ -152,6 +152,9 @@ pub enum Token {
     ArgumentEqual,
 }
 
+/// Offsets are 32 bits wide.
+pub const MAX_BYTES: usize = u32::MAX as usize;
+
 /// A token and its bytes `start..end`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lexeme {
@@ -161,9 +164,12 @@ pub struct Lexeme {
 }
 
 /// All tokens of `text`, comments and line ends included; every byte that is not white space is in exactly one.
-/// The text must be shorter than 4 GiB.
+/// Of a text that is larger than [`MAX_BYTES`] there are none.
 pub fn lex(text: &str) -> Vec<Lexeme> {
     let mut out: Vec<Lexeme> = Vec::new();
+    if text.len() > MAX_BYTES {
+        return out;
+    }
     for (token, range) in Token::lexer(text).spanned() {
         let (start, end) = (range.start as u32, range.end as u32);
         let token = token.unwrap_or(Token::Unknown);
