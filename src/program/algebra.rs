@@ -10,7 +10,6 @@ use super::errors;
 use super::exponent;
 use super::exponent::PowerError;
 use super::lower::Lowerer;
-use super::values::Function;
 use super::values::Meaning;
 use super::values::Truth;
 
@@ -216,14 +215,6 @@ impl Lowerer<'_> {
         }
         if let ExprKind::Apply { callee, .. } = &last.kind {
             self.report(errors::ambiguous_division(&callee.text, factor.span));
-        }
-    }
-
-    /// The function that a meaning is.
-    pub fn as_function(meaning: &Meaning) -> Option<Function> {
-        match meaning {
-            Meaning::Function(function) => Some(*function),
-            _ => None,
         }
     }
 }

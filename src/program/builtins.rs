@@ -125,12 +125,8 @@ pub(super) enum Constant {
     E,
 }
 
-/// Named numbers, with the words that complete "`name` is ...".
-pub(super) const CONSTANTS: &[(&str, Constant, &str)] = &[
-    ("pi", Constant::Pi, "the constant 3.14159..."),
-    ("tau", Constant::Tau, "the constant 2 pi = 6.28318..."),
-    ("e", Constant::E, "the constant 2.71828..."),
-];
+/// Named numbers. A file may give `tau` and `e` another meaning, as papers do, but not `pi`.
+pub(super) const CONSTANTS: &[(&str, Constant)] = &[("pi", Constant::Pi), ("tau", Constant::Tau), ("e", Constant::E)];
 
 /// The input that holds the time of an animation.
 pub const TIME: &str = "t";

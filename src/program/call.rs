@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Span;
 use crate::diagnostic::did_you_mean;
 use crate::graph::Op;
@@ -131,8 +132,8 @@ impl Lowerer<'_> {
     fn call(&mut self, function: Function, callee: &Name, args: &[Argument], span: Span) -> Meaning {
         match function {
             Function::Builtin(builtin) => {
-                let slots = self.bind(callee, args, builtin.parameters, builtin.variadic, builtin.parameters.len());
-                let Some(slots) = slots else { return Meaning::Invalid };
+                let required: Vec<(&str, bool)> = builtin.parameters.iter().map(|&name| (name, true)).collect();
+                let Some(slots) = self.bind(callee, args, &required, builtin.variadic) else { return Meaning::Invalid };
                 let args: Vec<Argued> = slots.into_iter().flatten().collect();
                 if args.iter().any(|(meaning, _)| matches!(meaning, Meaning::Invalid)) {
                     return Meaning::Invalid;
@@ -147,12 +148,9 @@ impl Lowerer<'_> {
         let program = self.program;
         let item = &program.items[id.0];
         let StatementKind::Fn { params, body, .. } = &program.statement(id).kind else { return Meaning::Invalid };
-        if item.broken {
-            return Meaning::Invalid;
-        }
-        let names: Vec<&str> = params.iter().map(|param| param.name.text.as_str()).collect();
-        let needed = params.iter().filter(|param| param.default.is_none()).count();
-        let Some(slots) = self.bind(callee, args, &names, false, needed) else { return Meaning::Invalid };
+        let signature: Vec<(&str, bool)> =
+            params.iter().map(|param| (param.name.text.as_str(), param.default.is_none())).collect();
+        let Some(slots) = self.bind(callee, args, &signature, false) else { return Meaning::Invalid };
         let mut locals: Vec<(String, Meaning)> = Vec::with_capacity(params.len());
         let call = || (item.name.text.clone(), span);
         for (param, slot) in params.iter().zip(slots) {
@@ -160,84 +158,71 @@ impl Lowerer<'_> {
                 (Some((meaning, _)), _) => meaning,
                 // A default may use the parameters before it.
                 (None, Some(default)) => self.in_frame(item.file, locals.clone(), call(), default),
-                (None, None) => {
-                    let takes = format!("the argument `{}`", param.name.text);
-                    self.report(errors::missing_argument(&callee.text, &takes, callee.span));
-                    return Meaning::Invalid;
-                }
+                (None, None) => Meaning::Invalid,
             };
+            if matches!(meaning, Meaning::Invalid) {
+                return Meaning::Invalid;
+            }
             locals.push((param.name.text.clone(), meaning));
-        }
-        if locals.iter().any(|(_, meaning)| matches!(meaning, Meaning::Invalid)) {
-            return Meaning::Invalid;
         }
         self.in_frame(item.file, locals, call(), body)
     }
 
-    /// Arguments in the places of their parameters. A variadic function's further arguments follow them.
+    /// Arguments in the places of their parameters, of which those marked `true` are required. Further arguments of a
+    /// variadic function follow; one list may stand for all of its arguments.
     fn bind(
         &mut self,
         callee: &Name,
         args: &[Argument],
-        parameters: &[&str],
+        parameters: &[(&str, bool)],
         variadic: bool,
-        needed: usize,
     ) -> Option<Vec<Option<Argued>>> {
+        let function = &callee.text;
         let mut slots: Vec<Option<Argued>> = vec![None; parameters.len()];
         let mut named = false;
         let mut good = true;
         for (position, argument) in args.iter().enumerate() {
             let argued = (self.lower(&argument.value), argument.value.span);
-            let place = match &argument.name {
+            let fault = match &argument.name {
                 Some(name) => {
                     named = true;
-                    let Some(place) = parameters.iter().position(|parameter| *parameter == name.text) else {
-                        let known = parameters.join(", ");
-                        let mut diagnostic = errors::unknown_argument(&callee.text, &name.text, name.span, &known);
-                        if let Some(near) = did_you_mean(&name.text, parameters.iter().copied()) {
-                            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
+                    match parameters.iter().position(|(parameter, _)| *parameter == name.text) {
+                        Some(place) if slots[place].is_none() => {
+                            slots[place] = Some(argued);
+                            continue;
                         }
-                        self.report(diagnostic);
-                        good = false;
-                        continue;
-                    };
-                    if slots[place].is_some() {
-                        self.report(errors::argument_twice(&callee.text, &name.text, name.span));
-                        good = false;
+                        Some(_) => errors::argument_twice(function, &name.text, name.span),
+                        None => unknown_argument(function, name, parameters),
                     }
-                    place
                 }
-                None if named => {
-                    self.report(errors::positional_after_named(&callee.text, argument.value.span));
-                    good = false;
+                None if named => errors::positional_after_named(function, argument.value.span),
+                None if position < slots.len() => {
+                    slots[position] = Some(argued);
                     continue;
                 }
-                None => position,
+                None if variadic => {
+                    slots.push(Some(argued));
+                    continue;
+                }
+                // Said once for all that are too many.
+                None if position > slots.len() => continue,
+                None => {
+                    let takes = counted(parameters, variadic);
+                    errors::argument_count(function, &takes, args.len(), argument.value.span, "one argument too many")
+                }
             };
-            if place < slots.len() {
-                slots[place] = Some(argued);
-            } else if variadic {
-                slots.push(Some(argued));
-            } else if good {
-                let takes = counted(needed, parameters.len());
-                let label = "one argument too many";
-                self.report(errors::argument_count(&callee.text, &takes, args.len(), argument.value.span, label));
-                good = false;
-            }
-        }
-        // One list in place of several numbers.
-        let spread = variadic && matches!(&slots[..], [Some((Meaning::Vector(_), _)), None]);
-        if spread {
-            slots.truncate(1);
-        } else if good && !named && args.len() < needed {
-            let takes = if variadic { format!("at least {needed} arguments") } else { counted(needed, parameters.len()) };
-            let missing: Vec<String> = parameters[args.len()..needed.max(args.len())].iter().map(|p| format!("`{p}`")).collect();
-            let label = format!("{} missing", missing.join(", "));
-            self.report(errors::argument_count(&callee.text, &takes, args.len(), callee.span, &label));
+            self.report(fault);
             good = false;
-        } else if good && parameters.len() == needed && slots.iter().any(Option::is_none) {
-            let missing = parameters.iter().zip(&slots).find(|(_, slot)| slot.is_none()).map_or("", |(name, _)| name);
-            self.report(errors::missing_argument(&callee.text, &format!("the argument `{missing}`"), callee.span));
+        }
+        if variadic && matches!(&slots[..], [Some((Meaning::Vector(_), _)), None]) {
+            slots.truncate(1);
+        }
+        let absent = parameters.iter().zip(&slots).filter(|((_, required), slot)| *required && slot.is_none());
+        let missing: Vec<String> = absent.map(|((name, _), _)| format!("`{name}`")).collect();
+        if good && !missing.is_empty() {
+            let label = format!("{} missing", missing.join(", "));
+            let takes = counted(parameters, variadic);
+            self.report(errors::argument_count(function, &takes, args.len(), callee.span, &label));
             good = false;
         }
         good.then_some(slots)
@@ -408,13 +393,24 @@ impl Lowerer<'_> {
     }
 }
 
+fn unknown_argument(function: &str, name: &Name, parameters: &[(&str, bool)]) -> Diagnostic {
+    let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
+    let diagnostic = errors::unknown_argument(function, &name.text, name.span, &names.join(", "));
+    match did_you_mean(&name.text, names) {
+        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        None => diagnostic,
+    }
+}
+
 /// How many arguments a function takes, in words.
-fn counted(needed: usize, most: usize) -> String {
-    match (needed, most) {
+fn counted(parameters: &[(&str, bool)], variadic: bool) -> String {
+    let least = parameters.iter().filter(|(_, required)| *required).count();
+    match (least, parameters.len()) {
+        (least, _) if variadic => format!("at least {least} arguments"),
         (0, 0) => "no arguments".to_owned(),
         (1, 1) => "1 argument".to_owned(),
-        (needed, most) if needed == most => format!("{most} arguments"),
-        (needed, most) if most == needed + 1 => format!("{needed} or {most} arguments"),
-        (needed, most) => format!("{needed} to {most} arguments"),
+        (least, most) if least == most => format!("{most} arguments"),
+        (least, most) if most == least + 1 => format!("{least} or {most} arguments"),
+        (least, most) => format!("{least} to {most} arguments"),
     }
 }

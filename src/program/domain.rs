@@ -74,8 +74,8 @@ pub(super) fn default_domain(graph: &Graph, shapes: &[Shape], parameters: &[Para
 }
 
 /// The search for a box around all zeros.
-struct Search {
-    enclosures: Enclosures,
+struct Search<'g> {
+    enclosures: Enclosures<'g>,
     /// Root numbers of the field and of the condition of every shape.
     shapes: Vec<(usize, Option<usize>)>,
     /// Ranges of the inputs; those of the coordinates change.
@@ -85,8 +85,8 @@ struct Search {
     work: usize,
 }
 
-impl Search {
-    fn new(graph: &Graph, shapes: &[Shape], parameters: &[(&str, Interval)], dimension: usize) -> Self {
+impl<'g> Search<'g> {
+    fn new(graph: &'g Graph, shapes: &[Shape], parameters: &[(&str, Interval)], dimension: usize) -> Self {
         let mut roots = Vec::new();
         let mut places = Vec::new();
         for shape in shapes {

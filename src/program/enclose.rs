@@ -13,7 +13,8 @@ use crate::interval::Interval;
 
 /// The part of a graph that some values need, laid out for repeated evaluation.
 #[derive(Debug)]
-pub(super) struct Enclosures {
+pub(super) struct Enclosures<'g> {
+    graph: &'g Graph,
     steps: Vec<Step>,
     /// Names of the inputs that occur, in the order of their steps.
     inputs: Vec<String>,
@@ -26,38 +27,35 @@ enum Step {
     Constant(Decorated),
     /// Index into the inputs.
     Input(usize),
-    /// Indices of earlier steps.
-    Apply(Op, [usize; 3]),
+    /// A node with the indices of earlier steps.
+    Apply(Value, [usize; 3]),
 }
 
-impl Enclosures {
-    pub fn new(graph: &Graph, roots: &[Value]) -> Self {
+impl<'g> Enclosures<'g> {
+    pub fn new(graph: &'g Graph, roots: &[Value]) -> Self {
         let order = needed(graph, roots);
         let place: HashMap<Value, usize> = order.iter().enumerate().map(|(i, &value)| (value, i)).collect();
         let mut inputs = Vec::new();
         let step = |&value: &Value| {
             let node = graph.node(value);
             match node.op {
-                Op::Const(_) => {
-                    let number = graph.as_constant(value).map_or(Interval::ENTIRE, Interval::from_rational);
-                    Step::Constant(Decorated::new(number))
-                }
+                Op::Const(_) => Step::Constant(graph::apply(graph, node, &[])),
                 Op::Var(id) => {
                     inputs.push(graph.variables()[id as usize].clone());
                     Step::Input(inputs.len() - 1)
                 }
-                op => {
+                _ => {
                     let mut operands = [0; 3];
-                    for (operand, value) in operands.iter_mut().zip(node.operands()) {
-                        *operand = place[value];
+                    for (operand, needed) in operands.iter_mut().zip(node.operands()) {
+                        *operand = place[needed];
                     }
-                    Step::Apply(op, operands)
+                    Step::Apply(value, operands)
                 }
             }
         };
         let steps: Vec<Step> = order.iter().map(step).collect();
         let roots = roots.iter().map(|root| place[root]).collect();
-        Self { steps, inputs, roots, results: Vec::new() }
+        Self { graph, steps, inputs, roots, results: Vec::new() }
     }
 
     /// The number of operations that one evaluation takes.
@@ -77,10 +75,14 @@ impl Enclosures {
             let result = match step {
                 Step::Constant(number) => *number,
                 Step::Input(index) => Decorated::new(inputs[*index]),
-                Step::Apply(op, operands) => {
-                    let arguments = operands.map(|operand| self.results.get(operand).copied());
-                    let given: Vec<Decorated> = arguments.into_iter().take(op.arity()).flatten().collect();
-                    graph::apply(*op, &given)
+                Step::Apply(value, operands) => {
+                    let node = self.graph.node(*value);
+                    let mut given = [Decorated::ILL; 3];
+                    let count = node.operands().len();
+                    for (place, &operand) in given.iter_mut().zip(&operands[..count]) {
+                        *place = self.results[operand];
+                    }
+                    graph::apply(self.graph, node, &given[..count])
                 }
             };
             self.results.push(result);

@@ -8,6 +8,7 @@ use std::collections::HashSet;
 use std::rc::Rc;
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::Label;
 use crate::diagnostic::Span;
 use crate::graph::Graph;
 use crate::graph::Op;
@@ -19,7 +20,7 @@ use crate::syntax::ast::Relation;
 use crate::syntax::ast::Sign;
 use crate::syntax::ast::StatementKind;
 
-use super::Differentiate;
+use super::resolve::Differentiate;
 use super::builtins::Constant;
 use super::errors;
 use super::exponent::Exact;
@@ -52,6 +53,7 @@ pub(super) struct Lowerer<'p> {
     frames: Vec<Frame>,
     depth: usize,
     expansion: usize,
+    exhausted: bool,
 }
 
 /// One inlined call, or the statement at the bottom.
@@ -75,6 +77,7 @@ impl<'p> Lowerer<'p> {
             frames: vec![Frame { file: 0, locals: Vec::new(), call: None }],
             depth: 0,
             expansion: 0,
+            exhausted: false,
         }
     }
 
@@ -90,18 +93,16 @@ impl<'p> Lowerer<'p> {
     pub fn evaluate_items(&mut self) {
         for &id in &self.program.order {
             let item = &self.program.items[id.0];
-            self.frames[0].file = item.file;
             let meaning = match &self.program.statement(id).kind {
                 _ if item.broken => Meaning::Invalid,
-                StatementKind::Let { value, .. } => self.lower(value),
+                StatementKind::Let { value, .. } => self.in_file(item.file, |lowerer| lowerer.lower(value)),
                 StatementKind::Fn { .. } => Meaning::Function(Function::Defined(id)),
                 StatementKind::Param { name, .. } => Meaning::Scalar(self.graph.var(&name.text)),
-                StatementKind::Shape { relation, .. } => self.lower(relation),
+                StatementKind::Shape { relation, .. } => self.in_file(item.file, |lowerer| lowerer.lower(relation)),
                 StatementKind::Domain { .. } | StatementKind::Import { .. } => Meaning::Invalid,
             };
             self.meanings[id.0] = Some(meaning);
         }
-        self.frames[0].file = 0;
     }
 
     /// The meaning of an evaluated definition.
@@ -112,18 +113,14 @@ impl<'p> Lowerer<'p> {
     /// Adds a message, once per place. In a function of the library the user's call becomes the main place.
     pub fn report(&mut self, mut diagnostic: Diagnostic) {
         let library = |frame: &Frame| self.program.files[frame.file].library;
-        if let [.., caller_frames, _] = &self.frames[..] {
-            let _ = caller_frames;
-            let last = self.frames.len() - 1;
-            let user = (1..=last).rev().find(|&i| !library(&self.frames[i - 1])).unwrap_or(1);
-            if let Some((name, span)) = &self.frames[if library(&self.frames[last]) { user } else { last }].call {
-                if library(&self.frames[last]) {
-                    let text = format!("in this call of `{name}`");
-                    diagnostic.labels.insert(0, crate::diagnostic::Label { span: *span, text });
-                } else {
-                    diagnostic = diagnostic.at(*span, format!("`{name}` is called here"));
-                }
+        let last = self.frames.len() - 1;
+        if library(&self.frames[last]) {
+            let entered = (1..=last).rev().find(|&i| !library(&self.frames[i - 1]));
+            if let Some((name, span)) = entered.and_then(|i| self.frames[i].call.as_ref()) {
+                diagnostic.labels.insert(0, Label { span: *span, text: format!("in this call of `{name}`") });
             }
+        } else if let Some((name, span)) = &self.frames[last].call {
+            diagnostic = diagnostic.at(*span, format!("`{name}` is called here"));
         }
         if self.reported.insert((diagnostic.code, diagnostic.labels.first().map(|label| label.span))) {
             self.diagnostics.push(diagnostic);
@@ -154,8 +151,9 @@ impl<'p> Lowerer<'p> {
         if self.expansion <= MAX_EXPANSION {
             return true;
         }
-        // Only once, wherever it happens first: everything after it is given up too.
-        if self.reported.insert(("expansion", None)) {
+        // Once, wherever it happens first; everything after it is given up too.
+        if !self.exhausted {
+            self.exhausted = true;
             self.report(errors::too_much_expansion(span));
         }
         false
@@ -167,6 +165,14 @@ impl<'p> Lowerer<'p> {
         let meaning = self.lower(body);
         self.frames.pop();
         meaning
+    }
+
+    /// Runs something with the names of another file.
+    pub fn in_file<T>(&mut self, file: usize, run: impl FnOnce(&mut Self) -> T) -> T {
+        self.frames.push(Frame { file, locals: Vec::new(), call: None });
+        let result = run(self);
+        self.frames.pop();
+        result
     }
 
     /// What a name means at this place.
@@ -216,7 +222,7 @@ impl<'p> Lowerer<'p> {
             self.report(errors::too_deep(expr.span));
             return Meaning::Invalid;
         }
-        if self.frames.len() > 1 && !self.spend(1, expr.span) {
+        if self.frames.last().is_some_and(|frame| frame.call.is_some()) && !self.spend(1, expr.span) {
             return Meaning::Invalid;
         }
         self.depth += 1;

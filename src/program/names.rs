@@ -1,7 +1,8 @@
 //! Names: the definitions of all files, what a name means in which file, and an order in which definitions can be evaluated.
 //!
 //! A file sees its own definitions, then those of the files that it imports (not further), then the standard library.
-//! Names of builtins, coordinates and constants cannot be redefined, so that their place in this order does not matter.
+//! Names of builtins, coordinates, settings and `pi` cannot be redefined, so that their place in this order does not matter;
+//! single letters such as `e` can.
 //! Definitions may stand in any order; a circle among them is an error.
 
 use std::collections::HashMap;
@@ -123,7 +124,7 @@ impl Program {
         if COORDINATES.contains(&name) || name == builtins::TIME {
             return Lookup::Input;
         }
-        if let Some((_, constant, _)) = builtins::CONSTANTS.iter().find(|(constant, ..)| *constant == name) {
+        if let Some((_, constant)) = builtins::CONSTANTS.iter().find(|(constant, _)| *constant == name) {
             return Lookup::Constant(*constant);
         }
         if let Some(builtin) = builtins::builtin(name) {
@@ -335,7 +336,7 @@ impl Program {
             StatementKind::Import { .. } => {}
             StatementKind::Shape { keyword, name, relation, condition } => {
                 match settings::as_setting(statement) {
-                    Some((_, args)) => open.extend(args.iter().map(|argument| &argument.value)),
+                    Some((_, _, args)) => open.extend(args.iter().map(|argument| &argument.value)),
                     None => open.push(relation),
                 }
                 open.extend(condition);
@@ -396,6 +397,9 @@ impl Program {
         if used.define {
             return diagnostic.help(format!("to define it write `let {name} = ...`"));
         }
+        if settings::SETTINGS.iter().any(|setting| setting.name == name) {
+            return diagnostic.help(format!("`{name}(...)` sets up the scene and is a statement of its own"));
+        }
         let known = |part: &str| !matches!(self.lookup(file, part), Lookup::Unknown);
         let letters: Vec<String> = name.chars().map(String::from).collect();
         if letters.len() > 1 && letters.iter().all(|letter| known(letter)) {
@@ -411,7 +415,7 @@ impl Program {
         let imported = scope.imports.iter().flat_map(|&import| self.files[import].own.keys());
         let candidates = scope.own.keys().chain(imported).chain(&self.variables).map(String::as_str);
         let builtin = builtins::BUILTINS.iter().map(|builtin| builtin.name);
-        let constants = builtins::CONSTANTS.iter().map(|(name, ..)| *name);
+        let constants = builtins::CONSTANTS.iter().map(|(name, _)| *name);
         let library = stdlib::stdlib_docs().iter().map(|doc| doc.name);
         let settings = settings::SETTINGS.iter().map(|setting| setting.name).filter(|_| used.called);
         // Sorted, so that the answer does not depend on the order of a hash table.
@@ -463,7 +467,7 @@ fn reserved(name: &str) -> Option<&'static str> {
     if settings::SETTINGS.iter().any(|setting| setting.name == name) {
         return Some("a setting of the scene");
     }
-    builtins::CONSTANTS.iter().find(|(constant, ..)| *constant == name).map(|(_, _, meaning)| *meaning)
+    (name == "pi").then_some("the constant 3.14159...")
 }
 
 /// The name that stands alone on the left of an equation.
