@@ -112,6 +112,14 @@ codes! {
     FILE_TOO_LARGE = "E0402";
     /// A file that cannot be opened.
     CANNOT_OPEN = "E0403";
+    /// A file that cannot be written.
+    CANNOT_WRITE = "E0404";
+    /// Arguments of a command that do not fit together or do not fit the scene.
+    BAD_ARGUMENT = "E0405";
+    /// A scene that is not in canonical layout, where that was asked.
+    NOT_FORMATTED = "E0406";
+    /// Formulas so large that compiling them takes a while.
+    LARGE_FORMULA = "E0407";
 
     /// A fault of Imp, not of its user.
     INTERNAL = "E0901";
