@@ -1,3 +1,7 @@
-//! The `imp` command: arguments to one call, errors to stderr, an exit status.
+//! The `imp` command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    imp::cli::main()
+}

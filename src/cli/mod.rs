@@ -1,1 +1,71 @@
-//! See the crate documentation.
+//! The command line: arguments to one call, results to stdout or files, messages to stderr, and an exit status: 0 done,
+//! 1 the user's mistake, 2 ours, 130 interrupted.
+
+mod arguments;
+mod failure;
+mod files;
+mod render;
+mod text;
+mod values;
+
+use std::io;
+use std::panic;
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
+
+use clap::Parser;
+
+use crate::cli::arguments::Arguments;
+use crate::cli::arguments::Command;
+use crate::cli::failure::Failure;
+
+/// Runs the command that the process was given.
+pub fn main() -> ExitCode {
+    files::exit_on_interrupt();
+    panic::set_hook(Box::new(report_panic));
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way too. A reader that is gone needs no message.
+            let _ = error.print();
+            return ExitCode::from(u8::from(error.use_stderr()));
+        }
+    };
+    match panic::catch_unwind(|| run(&arguments.command)) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failure)) => {
+            failure.print();
+            ExitCode::from(failure.status())
+        }
+        Err(_) => ExitCode::from(failure::OURS),
+    }
+}
+
+fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::Render(arguments) => render::render(arguments),
+        Command::Explain { file, picture } => render::explain(file, picture),
+        Command::Check { files } => text::check(files),
+        Command::Fmt { files, check } => text::format(files, *check),
+        Command::Emit(arguments) => text::emit(arguments),
+    }
+}
+
+/// Says of the first panic, on whichever thread, that it is not the user's fault.
+fn report_panic(info: &panic::PanicHookInfo) {
+    static REPORTED: AtomicBool = AtomicBool::new(false);
+    if REPORTED.swap(true, Ordering::Relaxed) {
+        return;
+    }
+    let place = info.location().map_or(String::new(), |location| format!(" ({location})"));
+    let what = info.payload_as_str().unwrap_or("no message");
+    let title = format!("this is a bug in Imp, not in your input: {what}{place}");
+    let mut message = format!("error[{}]: {title}\n", crate::diagnostic::code::INTERNAL);
+    message += "  = help: please report it with the command and the files that it read\n";
+    let backtrace = std::backtrace::Backtrace::capture();
+    if backtrace.status() == std::backtrace::BacktraceStatus::Captured {
+        message += &backtrace.to_string();
+    }
+    let _ = io::Write::write_all(&mut io::stderr(), message.as_bytes());
+}

@@ -58,6 +58,53 @@ codes! {
     WRONG_ARITY = "E0203";
     /// A value of one kind where another is needed.
     WRONG_KIND = "E0204";
+    /// A definition that takes a name of the language.
+    RESERVED_NAME = "E0205";
+    /// Definitions that need each other in a circle.
+    CIRCLE = "E0206";
+    /// A name that two imported files define.
+    AMBIGUOUS_NAME = "E0207";
+    /// An import that cannot be read.
+    CANNOT_IMPORT = "E0208";
+    /// An argument that is unknown, given twice, or in the wrong place.
+    BAD_ARGUMENT = "E0209";
+    /// An equation where an inside is needed.
+    EQUATION_AS_SOLID = "E0210";
+    /// An exponent that is too large to be exact.
+    EXPONENT_TOO_LARGE = "E0211";
+    /// Arguments behind something that is no function.
+    NOT_A_FUNCTION = "E0212";
+    /// A derivative by something that is no variable.
+    DERIVATIVE_BY = "E0213";
+    /// A list of the wrong length, or a component outside of it.
+    LIST_LENGTH = "E0214";
+    /// A formula that grows without bound when its functions are inlined.
+    TOO_MUCH_EXPANSION = "E0215";
+    /// A variable of an expression that has no value.
+    NO_VALUE = "E0216";
+
+    /// Something that must be a constant and is not.
+    NOT_CONSTANT = "E0301";
+    /// A constant without a finite value.
+    NOT_FINITE = "E0302";
+    /// A range whose ends are not in order.
+    EMPTY_RANGE = "E0303";
+    /// A setting of the scene that cannot be understood.
+    BAD_SETTING = "E0304";
+    /// A number outside of its range.
+    OUT_OF_RANGE = "E0305";
+    /// Something set twice.
+    SET_TWICE = "E0306";
+    /// Shapes and domain that do not agree on the plane or on space.
+    DIMENSION = "E0307";
+    /// A statement that is neither an equation nor a region.
+    NOT_A_SHAPE = "E0308";
+    /// A shape that is the same everywhere.
+    NO_COORDINATE = "E0309";
+    /// A file without any shape.
+    NO_SHAPE = "E0310";
+    /// A value from outside for a parameter that cannot take it.
+    BAD_OVERRIDE = "E0311";
 
     /// A file whose bytes are not UTF-8 text.
     NOT_TEXT = "E0401";
@@ -65,6 +112,14 @@ codes! {
     FILE_TOO_LARGE = "E0402";
     /// A file that cannot be opened.
     CANNOT_OPEN = "E0403";
+    /// A file that cannot be written.
+    CANNOT_WRITE = "E0404";
+    /// Arguments of a command that do not fit together or do not fit the scene.
+    BAD_ARGUMENT = "E0405";
+    /// A scene that is not in canonical layout, where that was asked.
+    NOT_FORMATTED = "E0406";
+    /// Formulas so large that compiling them takes a while.
+    LARGE_FORMULA = "E0407";
 
     /// A fault of Imp, not of its user.
     INTERNAL = "E0901";

@@ -103,6 +103,10 @@ impl Diagnostic {
         Self { severity: Severity::Error, code, title: title.into(), labels: Vec::new(), help: Vec::new() }
     }
 
+    pub fn warning(code: &'static str, title: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, title) }
+    }
+
     pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into() });
         self

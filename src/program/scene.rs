@@ -16,8 +16,8 @@ pub struct Scene {
     pub shapes: Vec<Shape>,
     /// Declared parameters in source order, with `t` last if a formula uses it.
     pub parameters: Vec<Parameter>,
-    /// One range per coordinate, 2 or 3 of them; outward hull of what was written, or the default [-2, 2]^n... chosen by
-    /// the program layer when the file gives none.
+    /// One range per coordinate, 2 or 3 of them; outward hull of what was written, or a box around the shapes, or [-4, 4]^n
+    /// if they are not known to be bounded.
     pub domain: Vec<Interval>,
     /// Whether the file gave a domain.
     pub domain_given: bool,
@@ -68,6 +68,8 @@ pub struct View {
     /// Directions towards the lights with their colour; `None` gives the default light, an empty list no light at all.
     pub lights: Option<Vec<Light>>,
     pub material: Option<Material>,
+    /// Materials of single shapes, by index into [`Scene::shapes`]; they replace the general one.
+    pub materials: Vec<(usize, Material)>,
     /// RGB in 0..1.
     pub background: Option<[f64; 3]>,
 }
@@ -111,4 +113,11 @@ pub struct Material {
     pub diffuse: f64,
     pub specular: f64,
     pub shininess: f64,
+}
+
+/// A light grey with a soft highlight.
+impl Default for Material {
+    fn default() -> Self {
+        Self { color: [0.75; 3], ambient: 0.15, diffuse: 0.8, specular: 0.25, shininess: 32.0 }
+    }
 }

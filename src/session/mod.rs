@@ -1,1 +1,254 @@
-//! See the crate documentation.
+//! Source to scene in one function, [`compile`], which keeps every stage for `imp emit`, and the choice of the backend
+//! that makes kernels of the scene's formulas.
+
+mod load;
+mod stages;
+
+use std::path::Path;
+
+use num_rational::BigRational;
+
+use crate::codegen::Compiler;
+use crate::derive;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::FileId;
+use crate::diagnostic::Severity;
+use crate::diagnostic::SourceMap;
+use crate::graph::Graph;
+use crate::graph::Value;
+use crate::interpret::Interpreter;
+use crate::interval::Interval;
+use crate::kernel::Backend;
+use crate::passes;
+use crate::passes::Report;
+use crate::program;
+use crate::program::Context;
+use crate::program::Importer;
+use crate::program::scene::COORDINATES;
+use crate::program::scene::Scene;
+use crate::syntax;
+use crate::syntax::ast::Module;
+
+pub use crate::session::load::MAX_BYTES;
+pub use crate::session::stages::Emission;
+pub use crate::session::stages::Stage;
+
+/// Where a scene comes from.
+#[derive(Debug, Clone, Copy)]
+pub enum Source<'a> {
+    /// A file; its imports are relative to it.
+    File(&'a Path),
+    /// A text under a name for messages; it may import the standard library alone.
+    Text { name: &'a str, text: &'a str },
+}
+
+/// A value from outside the file for a parameter or for the time `t`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Override {
+    pub name: String,
+    pub value: Given,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Given {
+    /// A constant expression such as `0.1` (one tenth exactly) or `pi/2`.
+    Text(String),
+    Exact(BigRational),
+}
+
+/// What became of a source, stage by stage. A stage that was not reached because an earlier one found errors is `None`.
+#[derive(Debug, Default)]
+pub struct Artefact {
+    /// Every file that was read, for rendering messages.
+    pub sources: SourceMap,
+    /// Everything that the stages had to say.
+    pub diagnostics: Vec<Diagnostic>,
+    pub file: Option<FileId>,
+    /// The tree, without the statements that could not be read.
+    pub module: Option<Module>,
+    /// The scene as it was written.
+    pub resolved: Option<Scene>,
+    /// What each pass did to the scene's graph.
+    pub passes: Vec<Report>,
+    /// The scene after the passes. Its formulas enclose the same values for coordinates inside the domain and parameters
+    /// inside their ranges, and say nothing about any others.
+    pub scene: Option<Scene>,
+}
+
+/// Compiles a source up to the scene from which kernels are made. A stage with errors is the last one; whether there
+/// were any shows in [`Artefact::scene`].
+pub fn compile(source: Source, overrides: &[Override]) -> Artefact {
+    let mut artefact = Artefact::default();
+    artefact.build(source, overrides);
+    artefact
+}
+
+/// Reads one file as text.
+///
+/// # Errors
+/// What is wrong with it, and the sources into which that points.
+pub fn read(path: &Path) -> Result<(SourceMap, FileId), (SourceMap, Diagnostic)> {
+    let mut sources = SourceMap::default();
+    match load::load(&mut sources, path) {
+        Ok(file) => Ok((sources, file)),
+        Err(diagnostic) => Err((sources, diagnostic)),
+    }
+}
+
+impl Artefact {
+    fn build(&mut self, source: Source, overrides: &[Override]) -> Option<()> {
+        // Bytes to text.
+        let (file, importer): (FileId, &dyn Importer) = match source {
+            Source::File(path) => (self.load(path)?, &program::FileSystem),
+            Source::Text { name, text } => (self.sources.add(name, text), &program::Embedded),
+        };
+        self.file = Some(file);
+
+        // Text to tree.
+        let text = self.sources.get(file).text.clone();
+        let (module, found) = syntax::parse(file, &text);
+        self.module = Some(module.clone());
+        self.report(found)?;
+
+        // Tree to formulas in one graph, with the scene around them.
+        let context = |overrides| Context { importer, differentiate: &derive::derivative, overrides };
+        let overrides = self.values(overrides, &context(&[]))?;
+        let (resolved, found) = program::resolve(&mut self.sources, file, module, &context(&overrides));
+        self.resolved = resolved;
+        self.report(found)?;
+
+        // Formulas to formulas that are cheaper or tighter over the domain.
+        let (scene, passes) = simplify(self.resolved.as_ref()?);
+        self.passes = passes;
+        self.scene = Some(scene);
+        Some(())
+    }
+
+    /// Keeps messages; `None` if one of them is an error.
+    fn report(&mut self, found: Vec<Diagnostic>) -> Option<()> {
+        let failed = found.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+        self.diagnostics.extend(found);
+        (!failed).then_some(())
+    }
+
+    fn load(&mut self, path: &Path) -> Option<FileId> {
+        match load::load(&mut self.sources, path) {
+            Ok(file) => Some(file),
+            Err(diagnostic) => {
+                self.diagnostics.push(diagnostic);
+                None
+            }
+        }
+    }
+
+    /// Encloses the values given from outside. Each text becomes a source of its own, so that messages can point into it.
+    fn values(&mut self, overrides: &[Override], context: &Context) -> Option<Vec<(String, Interval)>> {
+        let mut values = Vec::new();
+        let mut found = Vec::new();
+        for Override { name, value } in overrides {
+            let value = match value {
+                Given::Exact(number) => Ok(Interval::from_rational(number)),
+                Given::Text(text) => {
+                    let file = self.sources.add(format!("value of {name}"), text.as_str());
+                    let expression = syntax::parse_expression(file, text);
+                    expression.and_then(|e| program::resolve_constant(&mut self.sources, &e, context))
+                }
+            };
+            match value {
+                Ok(value) => values.push((name.clone(), value)),
+                Err(diagnostics) => found.extend(diagnostics),
+            }
+        }
+        self.report(found)?;
+        Some(values)
+    }
+}
+
+/// Runs the passes over the scene's graph, for coordinates inside the domain and parameters inside their ranges.
+fn simplify(scene: &Scene) -> (Scene, Vec<Report>) {
+    let mut roots: Vec<Value> = Vec::new();
+    let mut names: Vec<String> = Vec::new();
+    for shape in &scene.shapes {
+        roots.push(shape.field);
+        names.push(shape.name.clone());
+        roots.extend(shape.condition);
+        names.extend(shape.condition.map(|_| format!("{} where", shape.name)));
+    }
+    let mut graph = Graph::new();
+    let images = graph.import(&scene.graph, &roots, &Default::default());
+    for (name, image) in names.into_iter().zip(images) {
+        graph.add_output(name, image);
+    }
+    let inputs: Vec<Interval> = graph.variables().iter().map(|name| input_range(scene, name)).collect();
+    let (graph, reports) = passes::run(&graph, &inputs);
+    // The passes keep the outputs in their order.
+    let mut results = graph.outputs().iter().map(|&(_, value)| value);
+    let mut scene = scene.clone();
+    for shape in &mut scene.shapes {
+        shape.field = results.next().unwrap_or(shape.field);
+        shape.condition = shape.condition.and_then(|_| results.next());
+    }
+    scene.graph = graph;
+    (scene, reports)
+}
+
+/// Where an input of the scene's graph lies: a coordinate in the domain, a parameter in its range, the time anywhere.
+pub fn input_range(scene: &Scene, name: &str) -> Interval {
+    if let Some(axis) = COORDINATES.iter().position(|coordinate| *coordinate == name) {
+        return scene.domain.get(axis).copied().unwrap_or(Interval::ENTIRE);
+    }
+    let parameter = scene.parameters.iter().find(|parameter| parameter.name == name);
+    parameter.and_then(|parameter| parameter.range).unwrap_or(Interval::ENTIRE)
+}
+
+/// The compiler where it knows the machine, else the interpreter: slower, the same answers.
+pub fn backend() -> &'static dyn Backend {
+    if Compiler::available() { &Compiler } else { &Interpreter }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn compiled(text: &str, overrides: &[(&str, &str)]) -> Artefact {
+        let overrides: Vec<Override> = overrides
+            .iter()
+            .map(|(name, value)| Override { name: name.to_string(), value: Given::Text(value.to_string()) })
+            .collect();
+        compile(Source::Text { name: "test.imp", text }, &overrides)
+    }
+
+    #[test]
+    fn every_stage_is_kept() {
+        let artefact = compiled("x^2 + y^2 + z^2 = 1 where x*x < 1/4\ndomain [-2, 2]^3", &[]);
+        assert!(artefact.diagnostics.is_empty(), "{:?}", artefact.diagnostics);
+        let scene = artefact.scene.unwrap();
+        assert!(artefact.module.is_some() && artefact.resolved.is_some() && !artefact.passes.is_empty());
+        assert_eq!(scene.shapes.len(), 1);
+        assert_eq!(scene.graph.outputs().len(), 2);
+        assert_eq!(scene.graph.outputs()[1].1, scene.shapes[0].condition.unwrap());
+    }
+
+    #[test]
+    fn errors_stop_at_their_stage() {
+        let artefact = compiled("x^2 + = 1", &[]);
+        assert!(artefact.module.is_some() && artefact.resolved.is_none() && !artefact.diagnostics.is_empty());
+        let artefact = compiled("x^2 + q = 1", &[]);
+        assert!(artefact.resolved.is_none() && artefact.scene.is_none());
+        assert_eq!(artefact.diagnostics.len(), 1);
+    }
+
+    #[test]
+    fn given_values_are_exact_reals() {
+        let text = "param a = 1 in [0, 4]\nx^2 + y^2 + z^2 = a";
+        let artefact = compiled(text, &[("a", "0.1")]);
+        let value = artefact.scene.unwrap().parameters[0].value;
+        // One tenth lies between two neighbours.
+        assert_eq!(value.hi(), 0.1f64);
+        assert_eq!(value.lo(), 0.1f64.next_down());
+        for wrong in [("a", "5"), ("b", "1"), ("a", "x"), ("a", "1 +"), ("a", "1/0")] {
+            let artefact = compiled(text, &[wrong]);
+            assert!(artefact.scene.is_none() && !artefact.diagnostics.is_empty(), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! The arguments of every command, as clap reads them.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use clap::Parser;
+use clap::Subcommand;
+use clap::ValueEnum;
+
+use crate::cli::values;
+use crate::derive::Arithmetic;
+use crate::derive::Precision;
+use crate::derive::Rounding;
+use crate::render::Enclosures;
+use crate::render::Options;
+use crate::render::Stop;
+use crate::render::image::Layer;
+use crate::session::Override;
+use crate::session::Stage;
+
+/// A compiler from formulas to native interval code: implicit surfaces and curves with proofs.
+#[derive(Debug, Parser)]
+#[command(name = "imp", version, max_term_width = 100, subcommand_required = true, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw a scene.
+    Render(Box<RenderArguments>),
+    /// Check a certificate of a picture with the reference interpreter alone.
+    Verify {
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// What `imp render FILE --certificate OUT` wrote.
+        #[arg(value_name = "OUT")]
+        certificate: PathBuf,
+    },
+    /// Say which kernels, rays and effects a picture will run, and why.
+    Explain {
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        #[command(flatten)]
+        picture: PictureArguments,
+    },
+    /// Report mistakes in scenes without drawing them.
+    Check {
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+    },
+    /// Bring scenes into canonical layout, in place.
+    Fmt {
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// Change nothing; fail if a file is not in canonical layout.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Print a stage of the compilation.
+    Emit(EmitArguments),
+}
+
+/// What a picture is computed with; shared by all commands that compute one.
+#[derive(Debug, clap::Args)]
+pub struct PictureArguments {
+    /// Pixels across and down; one number for a square.
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = values::size)]
+    pub size: (u32, u32),
+    /// What encloses the field over beams of pixels.
+    #[arg(long, value_enum, default_value_t = EnclosuresArgument::Auto)]
+    pub arithmetic: EnclosuresArgument,
+    /// Format in which beams march; what single precision leaves open is tried in double.
+    #[arg(long, value_enum, default_value_t = PrecisionArgument::F32)]
+    pub precision: PrecisionArgument,
+    /// With `nearest` nothing is proved.
+    #[arg(long, value_enum, default_value_t = RoundingArgument::Outward)]
+    pub rounding: RoundingArgument,
+    #[command(flatten)]
+    pub stop: StopArguments,
+    /// Worker threads [default: one per processor]. The picture does not depend on them.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Value of a parameter or of the time `t`: a constant such as 0.1 (one tenth exactly) or pi/2. Repeatable.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Override>,
+    /// Draw poles where the field changes sign too; they stay unknown.
+    #[arg(long)]
+    pub poles: bool,
+}
+
+/// How far a hit is refined; at most one of them.
+#[derive(Debug, clap::Args)]
+#[group(multiple = false)]
+pub struct StopArguments {
+    /// Refine hits to cells of 2^-N of the domain [default: 16].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=48))]
+    pub depth: Option<u32>,
+    /// Refine hits to cells no longer than E.
+    #[arg(long, value_name = "E", value_parser = values::positive)]
+    pub epsilon: Option<f64>,
+    /// Refine hits to cells over which the field varies by no more than D.
+    #[arg(long, value_name = "D", value_parser = values::positive)]
+    pub tolerance: Option<f64>,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct RenderArguments {
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// PNG file to write, `-` for stdout [default: FILE with the ending .png, in the current folder].
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub picture: PictureArguments,
+    /// Frames A up to but not including B, each its own numbered file, at time t = frame / FPS.
+    #[arg(long, value_name = "A..B", value_parser = values::frames)]
+    pub frames: Option<Range<u64>>,
+    /// Frames in one unit of time.
+    #[arg(long, value_name = "FPS", default_value_t = 25, requires = "frames",
+          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub fps: u32,
+    /// Write a further layer: depth, normal or certainty, as in `--layer depth=depth.png`. Repeatable.
+    #[arg(long = "layer", value_name = "LAYER=FILE", value_parser = values::layer)]
+    pub layers: Vec<LayerArgument>,
+    /// Print times and counts on stdout, one object a picture.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub stats: Option<StatsArgument>,
+    /// Compute the picture N times and report the median time.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub repeat: u32,
+    /// Write what `imp verify` needs to check every proof in the picture.
+    #[arg(long, value_name = "OUT")]
+    pub certificate: Option<PathBuf>,
+}
+
+/// A layer and the file it goes to.
+#[derive(Debug, Clone)]
+pub struct LayerArgument {
+    pub layer: Layer,
+    pub path: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum StatsArgument {
+    Json,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct EmitArguments {
+    #[arg(value_name = "STAGE")]
+    pub stage: StageArgument,
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Format of the kernel, for stages from interval on.
+    #[arg(long, value_enum, default_value_t = PrecisionArgument::F32)]
+    pub precision: PrecisionArgument,
+    /// Rounding of the kernel.
+    #[arg(long, value_enum, default_value_t = RoundingArgument::Outward)]
+    pub rounding: RoundingArgument,
+    /// What the kernel of the stages clif and asm computes on.
+    #[arg(long, value_enum, default_value_t = KernelArgument::Interval)]
+    pub arithmetic: KernelArgument,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum StageArgument {
+    /// Tokens as the grammar reads them.
+    Tokens,
+    /// The syntax tree.
+    Ast,
+    /// The formulas as one graph.
+    Graph,
+    /// The graph after each pass that changed it.
+    Passes,
+    /// Program that encloses each field over boxes.
+    Interval,
+    /// The same with affine forms.
+    Affine,
+    /// Fields and their derivatives as a graph.
+    Gradient,
+    /// Input of the code generator.
+    Clif,
+    /// Machine code.
+    Asm,
+}
+
+impl PictureArguments {
+    /// The renderer's options; the layers and what else only `imp render` offers are left at their defaults.
+    pub fn options(&self) -> Options {
+        let StopArguments { depth, epsilon, tolerance } = self.stop;
+        let (width, height) = self.size;
+        Options {
+            width,
+            height,
+            enclosures: self.arithmetic.into(),
+            precision: self.precision.into(),
+            rounding: self.rounding.into(),
+            stop: match (depth, epsilon, tolerance) {
+                (Some(depth), _, _) => Stop::Depth(depth),
+                (_, Some(epsilon), _) => Stop::Epsilon(epsilon),
+                (_, _, Some(tolerance)) => Stop::Tolerance(tolerance),
+                (None, None, None) => Stop::default(),
+            },
+            threads: self.threads.map(usize::from),
+            poles: self.poles,
+            ..Options::default()
+        }
+    }
+}
+
+impl From<StageArgument> for Stage {
+    fn from(stage: StageArgument) -> Self {
+        match stage {
+            StageArgument::Tokens => Stage::Tokens,
+            StageArgument::Ast => Stage::Ast,
+            StageArgument::Graph => Stage::Graph,
+            StageArgument::Passes => Stage::Passes,
+            StageArgument::Interval => Stage::Interval,
+            StageArgument::Affine => Stage::Affine,
+            StageArgument::Gradient => Stage::Gradient,
+            StageArgument::Clif => Stage::Clif,
+            StageArgument::Asm => Stage::Asm,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum PrecisionArgument {
+    F32,
+    F64,
+}
+
+impl From<PrecisionArgument> for Precision {
+    fn from(precision: PrecisionArgument) -> Self {
+        match precision {
+            PrecisionArgument::F32 => Precision::Single,
+            PrecisionArgument::F64 => Precision::Double,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum RoundingArgument {
+    /// Every enclosure holds.
+    Outward,
+    /// As the source papers did it: nothing is proved.
+    Nearest,
+}
+
+impl From<RoundingArgument> for Rounding {
+    fn from(rounding: RoundingArgument) -> Self {
+        match rounding {
+            RoundingArgument::Outward => Rounding::Outward,
+            RoundingArgument::Nearest => Rounding::Nearest,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum EnclosuresArgument {
+    /// The natural interval extension.
+    Interval,
+    /// Affine forms intersected with it.
+    Affine,
+    /// One of the two, by the shape of the formula.
+    Auto,
+}
+
+impl From<EnclosuresArgument> for Enclosures {
+    fn from(enclosures: EnclosuresArgument) -> Self {
+        match enclosures {
+            EnclosuresArgument::Interval => Enclosures::Interval,
+            EnclosuresArgument::Affine => Enclosures::Affine,
+            EnclosuresArgument::Auto => Enclosures::Auto,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum KernelArgument {
+    Interval,
+    Affine,
+}
+
+impl From<KernelArgument> for Arithmetic {
+    fn from(arithmetic: KernelArgument) -> Self {
+        match arithmetic {
+            KernelArgument::Interval => Arithmetic::Interval,
+            KernelArgument::Affine => Arithmetic::Affine,
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Enclosures of graph values over boxes by the natural interval extension: constants of the scene, and the search for a
+//! default domain.
+
+use std::collections::HashMap;
+use std::collections::HashSet;
+
+use crate::graph;
+use crate::graph::Graph;
+use crate::graph::Op;
+use crate::graph::Value;
+use crate::interval::Decorated;
+use crate::interval::Interval;
+
+/// The part of a graph that some values need, laid out for repeated evaluation.
+#[derive(Debug)]
+pub(super) struct Enclosures<'g> {
+    graph: &'g Graph,
+    steps: Vec<Step>,
+    /// Names of the inputs that occur, in the order of their steps.
+    inputs: Vec<String>,
+    roots: Vec<usize>,
+    results: Vec<Decorated>,
+}
+
+#[derive(Debug)]
+enum Step {
+    Constant(Decorated),
+    /// Index into the inputs.
+    Input(usize),
+    /// A node with the indices of earlier steps.
+    Apply(Value, [usize; 3]),
+}
+
+impl<'g> Enclosures<'g> {
+    pub fn new(graph: &'g Graph, roots: &[Value]) -> Self {
+        let order = needed(graph, roots);
+        let place: HashMap<Value, usize> = order.iter().enumerate().map(|(i, &value)| (value, i)).collect();
+        let mut inputs = Vec::new();
+        let step = |&value: &Value| {
+            let node = graph.node(value);
+            match node.op {
+                Op::Const(_) => Step::Constant(graph::apply(graph, node, &[])),
+                Op::Var(id) => {
+                    inputs.push(graph.variables()[id as usize].clone());
+                    Step::Input(inputs.len() - 1)
+                }
+                _ => {
+                    let mut operands = [0; 3];
+                    for (operand, needed) in operands.iter_mut().zip(node.operands()) {
+                        *operand = place[needed];
+                    }
+                    Step::Apply(value, operands)
+                }
+            }
+        };
+        let steps: Vec<Step> = order.iter().map(step).collect();
+        let roots = roots.iter().map(|root| place[root]).collect();
+        Self { graph, steps, inputs, roots, results: Vec::new() }
+    }
+
+    /// The number of operations that one evaluation takes.
+    pub fn cost(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The inputs that occur; [`Enclosures::evaluate`] takes their ranges in this order.
+    pub fn inputs(&self) -> &[String] {
+        &self.inputs
+    }
+
+    /// Encloses everything for inputs in these ranges. Read the results with [`Enclosures::root`].
+    pub fn evaluate(&mut self, inputs: &[Interval]) {
+        self.results.clear();
+        for step in &self.steps {
+            let result = match step {
+                Step::Constant(number) => *number,
+                Step::Input(index) => Decorated::new(inputs[*index]),
+                Step::Apply(value, operands) => {
+                    let node = self.graph.node(*value);
+                    let mut given = [Decorated::ILL; 3];
+                    let count = node.operands().len();
+                    for (place, &operand) in given.iter_mut().zip(&operands[..count]) {
+                        *place = self.results[operand];
+                    }
+                    graph::apply(self.graph, node, &given[..count])
+                }
+            };
+            self.results.push(result);
+        }
+    }
+
+    /// The enclosure of the root of that number after an evaluation.
+    pub fn root(&self, index: usize) -> Interval {
+        self.results[self.roots[index]].interval()
+    }
+}
+
+/// What `roots` need, operands before users; the cost is that of the part, not of the graph.
+pub(super) fn needed(graph: &Graph, roots: &[Value]) -> Vec<Value> {
+    let mut seen: HashSet<Value> = roots.iter().copied().collect();
+    let mut stack: Vec<Value> = seen.iter().copied().collect();
+    while let Some(value) = stack.pop() {
+        stack.extend(graph.node(value).operands().iter().filter(|operand| seen.insert(**operand)));
+    }
+    // Operands have smaller indices than their users.
+    let mut order: Vec<Value> = seen.into_iter().collect();
+    order.sort_unstable();
+    order
+}
+
+/// The names of the inputs that a value depends on.
+pub(super) fn inputs_of(graph: &Graph, roots: &[Value]) -> Vec<String> {
+    let name = |value: Value| match graph.node(value).op {
+        Op::Var(id) => Some(graph.variables()[id as usize].clone()),
+        _ => None,
+    };
+    needed(graph, roots).into_iter().filter_map(name).collect()
+}

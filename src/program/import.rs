@@ -1,0 +1,101 @@
+//! Where imported files come from.
+//!
+//! Paths are relative to the importing file; those that start with `std/` name the embedded standard library, whatever the
+//! importer. A file may be imported from many places, also in a circle: it is read once.
+
+use std::fs;
+use std::io;
+use std::path::Component;
+use std::path::Path;
+use std::path::PathBuf;
+
+/// Reads files for `import`.
+pub trait Importer {
+    /// The text of a file.
+    ///
+    /// # Errors
+    /// Of kind [`io::ErrorKind::NotFound`] if there is no such file.
+    fn read(&self, path: &Path) -> io::Result<String>;
+
+    /// Names of the `.imp` files of a folder, for suggestions.
+    fn names(&self, folder: &Path) -> Vec<String>;
+}
+
+/// Reads from the file system.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FileSystem;
+
+impl Importer for FileSystem {
+    fn read(&self, path: &Path) -> io::Result<String> {
+        fs::read_to_string(path)
+    }
+
+    fn names(&self, folder: &Path) -> Vec<String> {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+        let mut names: Vec<String> = entries
+            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+            .filter(|name| name.ends_with(".imp"))
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+/// Knows no files: only the standard library can be imported.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Embedded;
+
+impl Importer for Embedded {
+    fn read(&self, _: &Path) -> io::Result<String> {
+        Err(io::Error::from(io::ErrorKind::NotFound))
+    }
+
+    fn names(&self, _: &Path) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// The path that `import "path"` means in the file `from`, without `.` and, where possible, without `..`: one file, one
+/// path.
+pub(super) fn resolve_path(from: &str, path: &str) -> PathBuf {
+    let joined = Path::new(from).parent().unwrap_or(Path::new("")).join(path);
+    let mut result = PathBuf::new();
+    for component in joined.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(result.components().next_back(), Some(Component::Normal(_))) => {
+                result.pop();
+            }
+            other => result.push(other),
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_relative_to_the_importing_file() {
+        let table = [
+            ("main.imp", "part.imp", "part.imp"),
+            ("scenes/main.imp", "part.imp", "scenes/part.imp"),
+            ("scenes/main.imp", "./a/../part.imp", "scenes/part.imp"),
+            ("scenes/main.imp", "../part.imp", "part.imp"),
+            ("main.imp", "../part.imp", "../part.imp"),
+            ("/tmp/main.imp", "/lib/part.imp", "/lib/part.imp"),
+        ];
+        for (from, path, expected) in table {
+            assert_eq!(resolve_path(from, path), Path::new(expected), "{path} from {from}");
+        }
+    }
+
+    #[test]
+    fn importers_say_what_is_missing() {
+        assert_eq!(Embedded.read(Path::new("x.imp")).unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert_eq!(FileSystem.read(Path::new("no/such/file.imp")).unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert!(FileSystem.names(Path::new("no/such/folder")).is_empty());
+    }
+}
