@@ -222,7 +222,10 @@ fn containment<T: Real>(op: Op, arithmetic: Arithmetic, kernel: &dyn Kernel<T>, 
 #[test]
 fn every_operation_contains_its_values() {
     let mut cc = Consts::new().expect("constants");
-    println!("{:24} {:>12} {:>12}   excess of f64 interval kernels over the tightest enclosure, ulps", "", "most", "mean");
+    println!(
+        "{:24} {:>12} {:>12}   excess of f64 interval kernels over the tightest enclosure, ulps",
+        "", "most", "mean"
+    );
     for op in operations() {
         let (graph, root) = formula(op);
         for arithmetic in [Arithmetic::Interval, Arithmetic::Affine] {

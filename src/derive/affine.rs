@@ -109,9 +109,9 @@ fn add(b: &mut Builder, x: &Af1, y: &Af1) -> Af1 {
     let mut error = b.add(x.error, y.error);
     error = b.add(error, gap);
     let mut coefficients = x.coefficients;
-    for i in 0..x.count {
-        let (coefficient, gap) = sum_with_gap(b, x.coefficients[i], y.coefficients[i]);
-        coefficients[i] = coefficient;
+    for (coefficient, &other) in coefficients.iter_mut().zip(y.coefficients()) {
+        let (sum, gap) = sum_with_gap(b, *coefficient, other);
+        *coefficient = sum;
         error = b.add(error, gap);
     }
     Af1 { centre, coefficients, error, ..*x }
@@ -127,11 +127,11 @@ fn mul(b: &mut Builder, x: &Af1, y: &Af1) -> Af1 {
     error = b.fma(size_y, x.error, error);
     error = b.add(error, quadratic);
     let mut coefficients = x.coefficients;
-    for i in 0..x.count {
-        let (left, left_gap) = product_with_gap(b, x.centre, y.coefficients[i]);
-        let (right, right_gap) = product_with_gap(b, y.centre, x.coefficients[i]);
-        let (coefficient, gap) = sum_with_gap(b, left, right);
-        coefficients[i] = coefficient;
+    for (coefficient, &other) in coefficients.iter_mut().zip(y.coefficients()) {
+        let (left, left_gap) = product_with_gap(b, x.centre, other);
+        let (right, right_gap) = product_with_gap(b, y.centre, *coefficient);
+        let (sum, gap) = sum_with_gap(b, left, right);
+        *coefficient = sum;
         for gap in [left_gap, right_gap, gap] {
             error = b.add(error, gap);
         }

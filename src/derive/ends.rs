@@ -200,7 +200,7 @@ impl Builder {
 
     /// `x^n` for n >= 1.
     pub fn power_ends(&mut self, x: Ends, sign: Sign, n: u32) -> Ends {
-        if n % 2 == 0 {
+        if n.is_multiple_of(2) {
             let magnitude = self.abs_ends(x);
             return self.power_of_nonnegative(magnitude, n);
         }

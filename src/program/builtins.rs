@@ -64,7 +64,13 @@ pub static BUILTINS: &[Builtin] = &[
     op(Op::Sqr, &["u"]),
     op(Op::Sqrt, &["u"]),
     op(Op::Cbrt, &["u"]),
-    row("hypot", &["a", "b"], true, Lowering::Fold(Op::Hypot), "The root of the sum of squares of two or more numbers."),
+    row(
+        "hypot",
+        &["a", "b"],
+        true,
+        Lowering::Fold(Op::Hypot),
+        "The root of the sum of squares of two or more numbers.",
+    ),
     row("pow", &["base", "exponent"], false, Lowering::Power, "The same as base^exponent."),
     op(Op::Exp, &["u"]),
     op(Op::Exp2, &["u"]),
@@ -87,7 +93,13 @@ pub static BUILTINS: &[Builtin] = &[
     op(Op::Asinh, &["u"]),
     op(Op::Acosh, &["u"]),
     op(Op::Atanh, &["u"]),
-    row("deriv", &["f", "variable"], false, Lowering::Derivative, "The derivative of f by a coordinate, the time or a parameter."),
+    row(
+        "deriv",
+        &["f", "variable"],
+        false,
+        Lowering::Derivative,
+        "The derivative of f by a coordinate, the time or a parameter.",
+    ),
     row(
         "component",
         &["v", "index"],
@@ -107,7 +119,13 @@ pub static BUILTINS: &[Builtin] = &[
     ),
     row("union", &["a", "b"], true, Lowering::Union, "What is in at least one region; the same as `or`."),
     row("intersect", &["a", "b"], true, Lowering::Intersect, "What is in all regions; the same as `and`."),
-    row("difference", &["a", "b"], true, Lowering::Difference, "What is in the first region and in none of the others."),
+    row(
+        "difference",
+        &["a", "b"],
+        true,
+        Lowering::Difference,
+        "What is in the first region and in none of the others.",
+    ),
 ];
 
 /// The builtin function of that name.

@@ -46,9 +46,10 @@ impl Lowerer<'_> {
             ([argument], Meaning::Scalar(_) | Meaning::Vector(_)) => {
                 self.arithmetic(Op::Mul, (meaning, callee.span), argument.clone())
             }
-            ([_, _] | [_, _, _], Meaning::Scalar(_) | Meaning::Vector(_) | Meaning::Truth(_) | Meaning::Equation(_)) => {
-                self.field_at(callee, meaning, &lowered, span)
-            }
+            (
+                [_, _] | [_, _, _],
+                Meaning::Scalar(_) | Meaning::Vector(_) | Meaning::Truth(_) | Meaning::Equation(_),
+            ) => self.field_at(callee, meaning, &lowered, span),
             _ => {
                 let diagnostic = errors::not_a_function(&callee.text, meaning.kind(), args.len(), callee.span);
                 let help = format!("`{0}(x, y, z)` is `{0}` at another point, in the plane `{0}(x, y)`", callee.text);
@@ -375,7 +376,9 @@ impl Lowerer<'_> {
                 return Meaning::Invalid;
             }
         };
-        let Some(index) = self.scalar("`component` needs a number", index, *index_span) else { return Meaning::Invalid };
+        let Some(index) = self.scalar("`component` needs a number", index, *index_span) else {
+            return Meaning::Invalid;
+        };
         let exact = self.exact.rational(&self.graph, index).filter(|number| number.is_integer());
         let place = exact.and_then(|number| usize::try_from(number.to_integer()).ok());
         let Some(place) = place.filter(|place| (1..=length).contains(place)) else {

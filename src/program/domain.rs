@@ -62,7 +62,12 @@ impl Lowerer<'_> {
 ///
 /// Parameters vary over their ranges and the time over all reals; if that leaves the shapes unbounded, the values that
 /// they have now decide.
-pub(super) fn default_domain(graph: &Graph, shapes: &[Shape], parameters: &[Parameter], dimension: usize) -> Vec<Interval> {
+pub(super) fn default_domain(
+    graph: &Graph,
+    shapes: &[Shape],
+    parameters: &[Parameter],
+    dimension: usize,
+) -> Vec<Interval> {
     let widest = |p: &Parameter| p.range.unwrap_or(Interval::ENTIRE);
     let current = |p: &Parameter| p.value;
     let attempts: [&dyn Fn(&Parameter) -> Interval; 2] = [&widest, &current];
@@ -97,7 +102,8 @@ impl<'g> Search<'g> {
         }
         let enclosures = Enclosures::new(graph, &roots);
         let names = enclosures.inputs();
-        let range = |name: &String| parameters.iter().find(|(p, _)| p == name).map_or(Interval::ENTIRE, |(_, range)| *range);
+        let range =
+            |name: &String| parameters.iter().find(|(p, _)| p == name).map_or(Interval::ENTIRE, |(_, range)| *range);
         let inputs = names.iter().map(range).collect();
         let coordinate = |name: &&str| names.iter().position(|input| input == name);
         let coordinates = COORDINATES[..dimension].iter().map(coordinate).collect();
@@ -128,7 +134,8 @@ impl<'g> Search<'g> {
     fn shell_is_empty(&mut self, inner: f64, outer: f64) -> bool {
         let dimension = self.places.len();
         (0..dimension).all(|axis| {
-            let mut slab: Vec<Interval> = (0..dimension).map(|i| symmetric(if i < axis { inner } else { outer })).collect();
+            let mut slab: Vec<Interval> =
+                (0..dimension).map(|i| symmetric(if i < axis { inner } else { outer })).collect();
             [(inner, outer), (-outer, -inner)].into_iter().all(|(lo, hi)| {
                 slab[axis] = interval(lo, hi);
                 self.is_empty(&slab)
@@ -143,7 +150,8 @@ impl<'g> Search<'g> {
         let mut cuts = |from: f64, direction: f64| {
             let mut count = 0;
             while count < 15 {
-                let (near, far) = (from + direction * f64::from(count) * step, from + direction * f64::from(count + 1) * step);
+                let (near, far) =
+                    (from + direction * f64::from(count) * step, from + direction * f64::from(count + 1) * step);
                 slab[axis] = interval(near.min(far), near.max(far));
                 if !self.is_empty(&slab) {
                     break;

@@ -80,7 +80,8 @@ pub(super) fn unknown_argument(function: &str, name: &str, span: Span, known: &s
 }
 
 pub(super) fn argument_twice(function: &str, name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(code::BAD_ARGUMENT, format!("argument `{name}` of `{function}` is given twice")).at(span, "given again here")
+    Diagnostic::error(code::BAD_ARGUMENT, format!("argument `{name}` of `{function}` is given twice"))
+        .at(span, "given again here")
 }
 
 pub(super) fn positional_after_named(function: &str, span: Span) -> Diagnostic {
@@ -104,12 +105,15 @@ pub(super) fn ambiguous_division(callee: &str, span: Span) -> Diagnostic {
 }
 
 pub(super) fn exponent_too_large(exponent: &str, span: Span, help: &str) -> Diagnostic {
-    Diagnostic::error(code::EXPONENT_TOO_LARGE, format!("the exponent {exponent} is too large")).at(span, "exact powers go up to 10000").help(help)
+    Diagnostic::error(code::EXPONENT_TOO_LARGE, format!("the exponent {exponent} is too large"))
+        .at(span, "exact powers go up to 10000")
+        .help(help)
 }
 
 /// `name(…)` with a number of arguments that fits neither a product nor a point.
 pub(super) fn not_a_function(name: &str, kind: &str, found: usize, span: Span) -> Diagnostic {
-    Diagnostic::error(code::NOT_A_FUNCTION, format!("`{name}` is {kind}, not a function of {found} arguments")).at(span, "called here")
+    Diagnostic::error(code::NOT_A_FUNCTION, format!("`{name}` is {kind}, not a function of {found} arguments"))
+        .at(span, "called here")
 }
 
 pub(super) fn derivative_by(span: Span) -> Diagnostic {
@@ -119,7 +123,8 @@ pub(super) fn derivative_by(span: Span) -> Diagnostic {
 }
 
 pub(super) fn lengths_differ(left: usize, right: usize, span: Span) -> Diagnostic {
-    Diagnostic::error(code::LIST_LENGTH, format!("lists of {left} and {right} numbers do not fit together")).at(span, "combined here")
+    Diagnostic::error(code::LIST_LENGTH, format!("lists of {left} and {right} numbers do not fit together"))
+        .at(span, "combined here")
 }
 
 pub(super) fn component_index(length: usize, span: Span) -> Diagnostic {
@@ -140,7 +145,8 @@ pub(super) fn too_deep(span: Span) -> Diagnostic {
 
 /// `needs` is e.g. "the end of a range".
 pub(super) fn not_constant(needs: &str, span: Span, depends_on: &str) -> Diagnostic {
-    Diagnostic::error(code::NOT_CONSTANT, format!("{needs} must be a constant")).at(span, format!("depends on `{depends_on}`"))
+    Diagnostic::error(code::NOT_CONSTANT, format!("{needs} must be a constant"))
+        .at(span, format!("depends on `{depends_on}`"))
 }
 
 pub(super) fn not_finite(needs: &str, span: Span) -> Diagnostic {
@@ -161,7 +167,9 @@ pub(super) fn out_of_range(what: &str, found: f64, range: &str, span: Span) -> D
 }
 
 pub(super) fn set_twice(what: &str, span: Span, first: Span) -> Diagnostic {
-    Diagnostic::error(code::SET_TWICE, format!("{what} is set twice")).at(span, "set again here").at(first, "first set here")
+    Diagnostic::error(code::SET_TWICE, format!("{what} is set twice"))
+        .at(span, "set again here")
+        .at(first, "first set here")
 }
 
 pub(super) fn dimension(title: &str, span: Span, label: &str, help: &str) -> Diagnostic {

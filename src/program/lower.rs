@@ -20,12 +20,12 @@ use crate::syntax::ast::Relation;
 use crate::syntax::ast::Sign;
 use crate::syntax::ast::StatementKind;
 
-use super::resolve::Differentiate;
 use super::builtins::Constant;
 use super::errors;
 use super::exponent::Exact;
 use super::names::Lookup;
 use super::names::Program;
+use super::resolve::Differentiate;
 use super::values::Equation;
 use super::values::Function;
 use super::values::ItemId;
@@ -135,7 +135,8 @@ impl<'p> Lowerer<'p> {
         let mut diagnostic = errors::wrong_kind(needs, found.kind(), span);
         match found {
             Meaning::Truth(_) | Meaning::Equation(_) => {
-                diagnostic = diagnostic.help("`if ... then 1 else 0` makes a number of a condition, field(...) of a shape");
+                diagnostic =
+                    diagnostic.help("`if ... then 1 else 0` makes a number of a condition, field(...) of a shape");
             }
             Meaning::Function(function) => {
                 diagnostic = diagnostic.help(format!("call it, for example `{}(x)`", self.function_name(*function)));
@@ -160,7 +161,13 @@ impl<'p> Lowerer<'p> {
     }
 
     /// Lowers `body` with the parameters of a called function.
-    pub fn in_frame(&mut self, file: usize, locals: Vec<(String, Meaning)>, call: (String, Span), body: &Expr) -> Meaning {
+    pub fn in_frame(
+        &mut self,
+        file: usize,
+        locals: Vec<(String, Meaning)>,
+        call: (String, Span),
+        body: &Expr,
+    ) -> Meaning {
         self.frames.push(Frame { file, locals, call: Some(call) });
         let meaning = self.lower(body);
         self.frames.pop();

@@ -447,7 +447,9 @@ struct Scan<'a> {
 /// The name that a statement defines.
 pub(super) fn defined_name(statement: &Statement) -> Option<&Name> {
     match &statement.kind {
-        StatementKind::Let { name, .. } | StatementKind::Fn { name, .. } | StatementKind::Param { name, .. } => Some(name),
+        StatementKind::Let { name, .. } | StatementKind::Fn { name, .. } | StatementKind::Param { name, .. } => {
+            Some(name)
+        }
         StatementKind::Shape { name, .. } => name.as_ref(),
         StatementKind::Domain { .. } | StatementKind::Import { .. } => None,
     }
@@ -487,7 +489,9 @@ fn push_children<'a>(kind: &'a ExprKind, open: &mut Vec<&'a Expr>) {
         ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Text(_) => {}
         ExprKind::Apply { args, .. } => open.extend(args.iter().map(|argument| &argument.value)),
         ExprKind::List(items) | ExprKind::And(items) | ExprKind::Or(items) => open.extend(items),
-        ExprKind::Bars(inner) | ExprKind::Group(inner) | ExprKind::Neg(inner) | ExprKind::Not(inner) => open.push(inner),
+        ExprKind::Bars(inner) | ExprKind::Group(inner) | ExprKind::Neg(inner) | ExprKind::Not(inner) => {
+            open.push(inner)
+        }
         ExprKind::Sum { first, rest } => {
             open.push(first);
             open.extend(rest.iter().map(|(_, term)| term));

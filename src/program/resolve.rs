@@ -118,7 +118,9 @@ pub fn resolve_expression(
     let variables: HashSet<String> = variables.iter().map(|&name| name.to_owned()).collect();
     // The expression is scanned like everything else if it is a definition; its name cannot be written.
     let mut module = definitions;
-    module.statements.retain(|statement| !matches!(statement.kind, StatementKind::Domain { .. } | StatementKind::Shape { .. }));
+    module
+        .statements
+        .retain(|statement| !matches!(statement.kind, StatementKind::Domain { .. } | StatementKind::Shape { .. }));
     let name = Name { text: String::new(), span: expression.span };
     let kind = StatementKind::Let { name, value: expression.clone() };
     module.statements.push(crate::syntax::ast::Statement { span: expression.span, doc: Vec::new(), kind });
@@ -157,7 +159,11 @@ pub fn resolve_expression(
 ///
 /// # Errors
 /// If it is no finite constant.
-pub fn resolve_constant(sources: &mut SourceMap, expression: &Expr, context: &Context) -> Result<Interval, Vec<Diagnostic>> {
+pub fn resolve_constant(
+    sources: &mut SourceMap,
+    expression: &Expr,
+    context: &Context,
+) -> Result<Interval, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
     let statement = crate::syntax::ast::Statement {
         span: expression.span,
@@ -269,7 +275,12 @@ fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]) -> Vec<Pa
         };
         if range.is_some_and(|range| range.disjoint(number)) {
             let range = range.map_or(String::new(), |range| format!("between {} and {}", range.lo(), range.hi()));
-            lowerer.report(errors::out_of_range(&format!("parameter `{}`", name.text), number.mid(), &range, value.span));
+            lowerer.report(errors::out_of_range(
+                &format!("parameter `{}`", name.text),
+                number.mid(),
+                &range,
+                value.span,
+            ));
         }
         found.push((Parameter { name: name.text.clone(), value: number, range }, name.span));
     }
@@ -332,7 +343,12 @@ fn check_dimension(lowerer: &mut Lowerer, shapes: &mut [Lowered], written: Optio
             lowerer.report(errors::dimension("a curve in a scene of three dimensions", span, "this curve", help));
         } else if dimension == 2 && uses_z(lowered) {
             let help = "give the domain a third range";
-            lowerer.report(errors::dimension("this shape uses z, but the domain has two ranges", span, "depends on `z`", help));
+            lowerer.report(errors::dimension(
+                "this shape uses z, but the domain has two ranges",
+                span,
+                "depends on `z`",
+                help,
+            ));
         } else if dimension == 2 && is_surface(lowered) {
             let help = "write `curve`, or give the domain a third range";
             lowerer.report(errors::dimension("a surface in a scene of two dimensions", span, "this surface", help));

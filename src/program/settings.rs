@@ -148,14 +148,20 @@ impl Settings {
             lowerer.report(errors::unknown_setting_value(title, expr.span).help("move its position or its target"));
         }
         if let Some(expr) = get("fov") {
-            camera.fov = lowerer.number_in(expr, "the field of view", |fov| 0.0 < fov && fov < 180.0, "between 0 and 180 degrees");
+            camera.fov = lowerer.number_in(
+                expr,
+                "the field of view",
+                |fov| 0.0 < fov && fov < 180.0,
+                "between 0 and 180 degrees",
+            );
         }
         if let Some(expr) = get("projection") {
             camera.projection = lowerer.text(expr, "a projection").and_then(|text| match &*text {
                 "perspective" => Some(Projection::Perspective),
                 "orthographic" => Some(Projection::Orthographic),
                 _ => {
-                    let diagnostic = errors::unknown_setting_value(format!("there is no projection \"{text}\""), expr.span);
+                    let diagnostic =
+                        errors::unknown_setting_value(format!("there is no projection \"{text}\""), expr.span);
                     lowerer.report(diagnostic.help("write \"perspective\" or \"orthographic\""));
                     None
                 }
@@ -171,7 +177,9 @@ impl Settings {
         if none {
             match self.view.lights {
                 None => self.view.lights = Some(Vec::new()),
-                Some(_) => lowerer.report(errors::set_twice("light(\"none\") beside another light", callee.span, callee.span)),
+                Some(_) => {
+                    lowerer.report(errors::set_twice("light(\"none\") beside another light", callee.span, callee.span))
+                }
             }
             self.set.insert("no light".to_owned(), callee.span);
             return;
@@ -194,7 +202,9 @@ impl Settings {
                     None => "a light needs a direction or a position",
                 };
                 let diagnostic = errors::unknown_setting_value(title.to_owned(), callee.span);
-                lowerer.report(diagnostic.help("for example `light(direction = [1, 2, 3])`, which points towards the light"));
+                lowerer.report(
+                    diagnostic.help("for example `light(direction = [1, 2, 3])`, which points towards the light"),
+                );
                 None
             }
         };
