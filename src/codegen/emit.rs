@@ -17,6 +17,7 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::types;
 use cranelift_codegen::isa::CallConv;
 use cranelift_codegen::isa::OwnedTargetIsa;
+use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_codegen::settings;
 use cranelift_codegen::settings::Configurable;
 use cranelift_frontend::FunctionBuilder;
@@ -32,11 +33,22 @@ use crate::diagnostic::code;
 
 /// Bytes of one slot of one packet (see `kernel::Packet`), and of one vector register.
 const PACKET: i64 = 64;
-const VECTOR: i64 = 16;
+pub const VECTOR: usize = 16;
 
 /// Above this many values live at once, the allocator that is linear in the program's length takes over: the other
 /// one gives code twice as fast, but its time grows with the square of the live values.
 const LIVE_LIMIT: usize = 600;
+
+/// The machine code of a program: the function and its constants, with nothing to relocate.
+pub fn machine_code(program: &LaneProgram, isa: &OwnedTargetIsa, stride: usize) -> Result<Vec<u8>, Diagnostic> {
+    let mut context = Context::new();
+    function(program, isa.frontend_config(), stride, &mut context);
+    let code = context.compile(&**isa, &mut Default::default()).map_err(|error| internal(&error.inner))?;
+    if !code.buffer.relocs().is_empty() {
+        return Err(internal(&"a kernel calls a function"));
+    }
+    Ok(code.code_buffer().to_vec())
+}
 
 /// The text of a compiled program.
 pub struct Emitted {
@@ -49,7 +61,7 @@ pub fn emit(program: &LaneProgram) -> Result<Emitted, Diagnostic> {
     let isa = isa(program)?;
     let mut context = Context::new();
     context.set_disasm(true);
-    function(program, isa.frontend_config(), &mut context);
+    function(program, isa.frontend_config(), VECTOR, &mut context);
     let clif = context.func.display().to_string();
     let code = context.compile(&*isa, &mut Default::default()).map_err(|error| internal(&error.inner))?;
     Ok(Emitted { clif, assembly: code.vcode.clone().unwrap_or_default() })
@@ -74,7 +86,13 @@ pub fn isa(program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
     ] {
         flags.set(name, value).map_err(|error| internal(&error))?;
     }
-    let host = cranelift_native::builder().map_err(|error| internal(&error))?;
+    let mut host = cranelift_native::builder().map_err(|error| internal(&error))?;
+    // EVEX encodings have no place in `widen`, and 128-bit kernels gain nothing by them.
+    for name in ["has_avx512f", "has_avx512vl", "has_avx512dq", "has_avx512bitalg", "has_avx512vbmi"] {
+        if cfg!(target_arch = "x86_64") {
+            host.set(name, "false").map_err(|error| internal(&error))?;
+        }
+    }
     host.finish(settings::Flags::new(flags)).map_err(|error| internal(&error))
 }
 
@@ -109,7 +127,11 @@ pub fn signature() -> Signature {
 }
 
 /// Fills `context` with the kernel of a program.
-pub fn function(program: &LaneProgram, config: cranelift_codegen::isa::TargetFrontendConfig, context: &mut Context) {
+///
+/// `stride` is how many bytes of a packet one pass of the loop covers: those of a register, or twice as many in code that
+/// is to be widened.
+pub fn function(program: &LaneProgram, config: TargetFrontendConfig, stride: usize, context: &mut Context) {
+    let stride = stride as i64;
     context.func.signature = signature();
     let mut builder_context = FunctionBuilderContext::new();
     let mut b = FunctionBuilder::new(&mut context.func, &mut builder_context);
@@ -148,9 +170,9 @@ pub fn function(program: &LaneProgram, config: cranelift_codegen::isa::TargetFro
         let value = emitter.values[output.index()];
         emitter.b.ins().store(MemFlagsData::trusted(), value, outputs_now, slot as i32 * PACKET as i32);
     }
-    let done = b.ins().iadd_imm_s(done, VECTOR);
-    let inputs_next = b.ins().iadd_imm_s(inputs_now, VECTOR);
-    let outputs_next = b.ins().iadd_imm_s(outputs_now, VECTOR);
+    let done = b.ins().iadd_imm_s(done, stride);
+    let inputs_next = b.ins().iadd_imm_s(inputs_now, stride);
+    let outputs_next = b.ins().iadd_imm_s(outputs_now, stride);
     let more = b.ins().icmp_imm_s(IntCC::NotEqual, done, PACKET);
     let again = [inputs_next.into(), outputs_next.into(), left.into(), done.into()];
     b.ins().brif(more, body, &again, next_group, &[]);
@@ -251,7 +273,7 @@ impl Emitter<'_, '_> {
     /// The low bits of `lane` in every lane.
     fn constant(&mut self, ty: Type, lane: u64) -> Value {
         let bytes = &lane.to_le_bytes()[..self.scalar.bytes() as usize];
-        let vector: Vec<u8> = bytes.repeat(VECTOR as usize / bytes.len());
+        let vector: Vec<u8> = bytes.repeat(VECTOR / bytes.len());
         let handle = self.b.func.dfg.constants.insert(ConstantData::from(vector));
         self.b.ins().vconst(ty, handle)
     }

@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 use std::mem::ManuallyDrop;
 
+use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_jit::JITBuilder;
 use cranelift_jit::JITModule;
 use cranelift_module::Linkage;
@@ -11,6 +12,7 @@ use cranelift_module::default_libcall_names;
 
 use crate::codegen::emit;
 use crate::codegen::rounding;
+use crate::codegen::widen;
 use crate::derive::LaneProgram;
 use crate::derive::Precision;
 use crate::derive::Rounding;
@@ -55,8 +57,8 @@ impl<T: Format> JitKernel<T> {
             return Err(Diagnostic::error(code::INTERNAL, title));
         }
         let isa = emit::isa(program)?;
-        let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));
-        match define(&mut module, program) {
+        let mut module = JITModule::new(JITBuilder::with_isa(isa.clone(), default_libcall_names()));
+        match define(&mut module, &isa, program) {
             Ok(entry) => Ok(Self {
                 entry,
                 rounding,
@@ -75,15 +77,23 @@ impl<T: Format> JitKernel<T> {
     }
 }
 
-fn define(module: &mut JITModule, program: &LaneProgram) -> Result<rounding::Entry, Diagnostic> {
+/// Compiles to the widest code that the machine runs and the widening pass knows how to make.
+fn define(module: &mut JITModule, isa: &OwnedTargetIsa, program: &LaneProgram) -> Result<rounding::Entry, Diagnostic> {
+    let wide = match widen::available() {
+        true => widen::widen(&emit::machine_code(program, isa, 2 * emit::VECTOR)?),
+        false => None,
+    };
+    let (bytes, start) = match wide {
+        Some(wide) => (wide.bytes, wide.entry),
+        None => (emit::machine_code(program, isa, emit::VECTOR)?, 0),
+    };
     let id = module
         .declare_function("kernel", Linkage::Local, &emit::signature())
         .map_err(|error| emit::internal(&error))?;
-    let mut context = module.make_context();
-    emit::function(program, module.target_config(), &mut context);
-    module.define_function(id, &mut context).map_err(|error| emit::internal(&error))?;
+    // The alignment of a cache line is that of the widest constant, too.
+    module.define_function_bytes(id, 64, &bytes, &[]).map_err(|error| emit::internal(&error))?;
     module.finalize_definitions().map_err(|error| emit::internal(&error))?;
-    let code = module.get_finalized_function(id);
+    let code = module.get_finalized_function(id).wrapping_add(start);
     // SAFETY: the function was compiled with exactly this signature and calling convention.
     Ok(unsafe { std::mem::transmute::<*const u8, rounding::Entry>(code) })
 }

@@ -3,6 +3,7 @@
 mod emit;
 mod jit;
 mod rounding;
+mod widen;
 
 use std::sync::Arc;
 
