@@ -1,1 +1,131 @@
-//! See the crate documentation.
+//! The packet ray caster and the plotter of plane scenes: from a scene and options to a picture that says of every
+//! pixel what is proved.
+//!
+//! Stages of a space scene, tile by tile: [`march`] moves beams of pixels front to back until each is refuted or in a
+//! cell where the field is monotone along the rays, `solve` finds the zeros there, `finish` takes single rays through
+//! everything else, `shade` turns hits into colours. `plane` decides pixels as boxes.
+
+mod batch;
+mod camera;
+pub mod certificate;
+mod finish;
+mod grid;
+pub mod image;
+mod march;
+mod options;
+mod outcome;
+mod picture;
+mod plan;
+mod programs;
+mod shade;
+mod solve;
+mod space;
+mod stats;
+mod tile;
+
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering;
+
+use crate::diagnostic::Diagnostic;
+use crate::kernel::Backend;
+use crate::program::scene::Parameter;
+use crate::program::scene::Scene;
+
+pub use options::Enclosures;
+pub use options::Layers;
+pub use options::Options;
+pub use options::Stop;
+pub use outcome::Surface;
+pub use picture::Certainty;
+pub use picture::Depth;
+pub use picture::Picture;
+pub use plan::Plan;
+pub use plan::Planned;
+pub use stats::Evaluations;
+pub use stats::Stats;
+
+/// How a caller watches and stops work under way.
+#[derive(Default)]
+pub struct Control<'a> {
+    /// Called with tiles done and tiles in all, from any thread.
+    pub progress: Option<&'a (dyn Fn(usize, usize) + Sync)>,
+    /// Set from anywhere to stop: the work ends with a diagnostic, and nothing is written.
+    pub cancel: Option<&'a AtomicBool>,
+    done: AtomicUsize,
+}
+
+impl<'a> Control<'a> {
+    pub fn new(progress: Option<&'a (dyn Fn(usize, usize) + Sync)>, cancel: Option<&'a AtomicBool>) -> Self {
+        Self { progress, cancel, done: AtomicUsize::new(0) }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    fn advance(&self, total: usize) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        if let Some(progress) = self.progress {
+            progress(done, total);
+        }
+    }
+
+    fn cancelled() -> Diagnostic {
+        Diagnostic::error("E0605", "stopped before the picture was complete")
+    }
+}
+
+/// A scene with its kernels, ready to be rendered for any values of its parameters: an animation compiles once.
+pub struct Renderer {
+    space: space::Space,
+    threads: Option<rayon::ThreadPool>,
+}
+
+impl Renderer {
+    /// Compiles what the plan needs.
+    ///
+    /// # Errors
+    /// If the scene cannot be drawn (`E06..`), or the backend fails.
+    pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
+        let threads = match options.threads {
+            None => None,
+            Some(count) => {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+                let failed = |error| Diagnostic::error("E0606", format!("cannot start {count} threads: {error}"));
+                Some(pool.map_err(failed)?)
+            }
+        };
+        Ok(Self { space: space::Space::new(scene, options, backend)?, threads })
+    }
+
+    /// What will run, and why.
+    pub fn plan(&self) -> &Plan {
+        &self.space.plan
+    }
+
+    /// Renders with the given values of the scene's parameters, in the scene's order.
+    ///
+    /// # Errors
+    /// If the work is cancelled (`E0605`).
+    pub fn render(&self, parameters: &[Parameter], control: &Control<'_>) -> Result<Picture, Diagnostic> {
+        let work = || self.space.render(parameters, control);
+        match &self.threads {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+}
+
+/// Renders a scene with the values that its parameters have in it.
+///
+/// # Errors
+/// As [`Renderer::new`] and [`Renderer::render`].
+pub fn render(
+    scene: &Scene,
+    options: &Options,
+    backend: &dyn Backend,
+    control: &Control<'_>,
+) -> Result<Picture, Diagnostic> {
+    Renderer::new(scene, options, backend)?.render(&scene.parameters, control)
+}

@@ -1,0 +1,370 @@
+//! Rays: the exact lines o + t d of their stored origin and direction, one per pixel centre.
+//!
+//! Inside a tile all directions have a component of exactly +1 or -1 along the tile's dominant axis K, so that cells
+//! of t are slabs across K that all rays of the tile share (K-marching: Knoll, Hijazi et al. 2007). Tiles depend on
+//! the picture's size and the camera alone.
+
+use glam::DVec3;
+
+use crate::diagnostic::Diagnostic;
+use crate::interval::Interval;
+use crate::program::scene::CameraSettings;
+use crate::program::scene::Projection;
+
+/// Pixels along the side of a full tile.
+pub const TILE: u32 = 64;
+
+/// Vertical field of view when none is given, in degrees.
+const FIELD_OF_VIEW: f64 = 30.0;
+/// Share of the picture that the domain may fill when the camera is placed automatically.
+const FRAME: f64 = 0.96;
+/// The default three-quarter view: degrees around z and above the horizon.
+const AZIMUTH: f64 = 32.0;
+const ELEVATION: f64 = 24.0;
+/// The least component along K, relative to the direction's length, that a tile's rays may have.
+const LEAST_SLANT: f64 = 0.3;
+
+/// Where rays come from. `right` and `up` are one pixel long, measured where `forward` ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    pub projection: Projection,
+    /// The eye, or the centre of the plane from which parallel rays start.
+    pub position: DVec3,
+    pub forward: DVec3,
+    pub right: DVec3,
+    pub up: DVec3,
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Camera {
+    /// The camera of a scene; what the settings leave open frames the domain from a three-quarter view, z up.
+    ///
+    /// # Errors
+    /// If the field of view is no angle between 0 and 150 degrees, or the camera looks at its own position.
+    pub fn new(
+        settings: &CameraSettings,
+        domain: &[Interval],
+        (width, height): (u32, u32),
+    ) -> Result<Self, Diagnostic> {
+        let low = DVec3::new(domain[0].lo(), domain[1].lo(), domain[2].lo());
+        let high = DVec3::new(domain[0].hi(), domain[1].hi(), domain[2].hi());
+        let fov = settings.fov.unwrap_or(FIELD_OF_VIEW);
+        if !(fov > 0.0 && fov <= 150.0) {
+            return Err(Diagnostic::error("E0601", format!("a field of view of {fov} degrees cannot be drawn"))
+                .help("write an angle between 0 and 150 degrees, for example `fov = 30`"));
+        }
+        let projection = settings.projection.unwrap_or(Projection::Perspective);
+        let centre = 0.5 * (low + high);
+        let target = settings.target.map_or(centre, DVec3::from);
+        let (azimuth, elevation) = (AZIMUTH.to_radians(), ELEVATION.to_radians());
+        let three_quarter =
+            DVec3::new(elevation.cos() * azimuth.sin(), -elevation.cos() * azimuth.cos(), elevation.sin());
+        let away = settings.position.map_or(three_quarter, |position| DVec3::from(position) - target);
+        let Some(forward) = (-away).try_normalize() else {
+            return Err(Diagnostic::error("E0602", "the camera's position and its target are the same point")
+                .help("move one of them"));
+        };
+        let wanted = settings.up.map_or(DVec3::Z, DVec3::from);
+        // A camera that looks along its own up direction has y up instead.
+        let right = [wanted, DVec3::Y, DVec3::X]
+            .into_iter()
+            .filter_map(|up| up.try_normalize())
+            .map(|up| forward.cross(up))
+            .find(|right| right.length() > 1e-6)
+            .expect("one of two perpendicular directions is not parallel to a third")
+            .normalize();
+        let up = right.cross(forward);
+
+        let aspect = f64::from(width) / f64::from(height);
+        let half = (0.5 * fov.to_radians()).tan();
+        let corners = (0..8u8).map(|i| {
+            let pick = |bit: u8, axis: usize| if i >> bit & 1 == 0 { low[axis] } else { high[axis] };
+            DVec3::new(pick(0, 0), pick(1, 1), pick(2, 2)) - target
+        });
+        // Half the picture's height that holds a corner, and that corner's depth beyond the target.
+        let extents = corners.map(|c| (c.dot(up).abs().max(c.dot(right).abs() / aspect) / FRAME, c.dot(forward)));
+        let (position, half_height) = match (settings.position, projection) {
+            (Some(position), Projection::Perspective) => (DVec3::from(position), half),
+            (Some(position), Projection::Orthographic) => (DVec3::from(position), half * away.length()),
+            (None, Projection::Perspective) => {
+                let distance = extents.map(|(size, depth)| size / half - depth).fold(0.0, f64::max);
+                (target - distance * forward, half)
+            }
+            (None, Projection::Orthographic) => {
+                let (mut size, mut back) = (0.0f64, 0.0f64);
+                for (extent, depth) in extents {
+                    size = size.max(extent);
+                    back = back.max(-depth);
+                }
+                (target - 1.5 * back * forward, size)
+            }
+        };
+        let pixel = 2.0 * half_height / f64::from(height);
+        Ok(Self { projection, position, forward, right: pixel * right, up: pixel * up, width, height })
+    }
+
+    /// The number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// The direction through the point of the picture (x to the right, y down, pixel centres at whole numbers), not
+    /// scaled.
+    fn direction(&self, x: f64, y: f64) -> DVec3 {
+        match self.projection {
+            Projection::Perspective => {
+                let (u, v) = self.offsets(x, y);
+                self.forward + u * self.right + v * self.up
+            }
+            Projection::Orthographic => self.forward,
+        }
+    }
+
+    /// Pixels to the right of and above the centre of the picture.
+    fn offsets(&self, x: f64, y: f64) -> (f64, f64) {
+        (x - 0.5 * (f64::from(self.width) - 1.0), 0.5 * (f64::from(self.height) - 1.0) - y)
+    }
+
+    /// The tiles of the picture, row by row. A tile in which no axis dominates everywhere is cut into smaller ones.
+    pub fn tiles(&self) -> Vec<Tile> {
+        let mut tiles = Vec::new();
+        for y in (0..self.height).step_by(TILE as usize) {
+            for x in (0..self.width).step_by(TILE as usize) {
+                self.cut(x, y, TILE, &mut tiles);
+            }
+        }
+        tiles
+    }
+
+    fn cut(&self, x: u32, y: u32, size: u32, tiles: &mut Vec<Tile>) {
+        if x >= self.width || y >= self.height {
+            return;
+        }
+        let last_x = (x + size).min(self.width) - 1;
+        let last_y = (y + size).min(self.height) - 1;
+        let centre = self.direction(0.5 * f64::from(x + last_x), 0.5 * f64::from(y + last_y));
+        let axis = centre.abs().max_position();
+        let sign = centre[axis].signum();
+        let dominates = [(x, y), (last_x, y), (x, last_y), (last_x, last_y)].into_iter().all(|(x, y)| {
+            let direction = self.direction(x.into(), y.into());
+            sign * direction[axis] >= LEAST_SLANT * direction.length()
+        });
+        if dominates || size == 1 {
+            tiles.push(Tile { x, y, size, last_x, last_y, axis, sign });
+            return;
+        }
+        let half = size / 2;
+        for (dx, dy) in [(0, 0), (half, 0), (0, half), (half, half)] {
+            self.cut(x + dx, y + dy, half, tiles);
+        }
+    }
+}
+
+/// A square of pixels that is rendered as one task; the part beyond the picture's edge is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tile {
+    pub x: u32,
+    pub y: u32,
+    /// A power of two up to [`TILE`].
+    pub size: u32,
+    pub last_x: u32,
+    pub last_y: u32,
+    /// The dominant axis K and the sign of the directions' component along it.
+    pub axis: usize,
+    pub sign: f64,
+}
+
+/// A pixel's exact line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    pub origin: [f64; 3],
+    pub direction: [f64; 3],
+}
+
+impl Ray {
+    /// The nearest point to o + t d.
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        std::array::from_fn(|c| self.direction[c].mul_add(t, self.origin[c]))
+    }
+
+    /// The ends of the stretch t >= 0 inside the domain, each enclosed: ([earliest, latest] entry, [earliest, latest]
+    /// exit). Between the latest entry and the earliest exit, o + t d rounded outward in `f64` lies in the domain.
+    /// `None` if the ray misses the domain.
+    pub fn clip(&self, domain: &[Interval]) -> Option<([f64; 2], [f64; 2])> {
+        let (mut entry, mut exit) = ([0.0f64; 2], [f64::INFINITY; 2]);
+        for (axis, range) in domain.iter().enumerate() {
+            let (o, d) = (self.origin[axis], self.direction[axis]);
+            let (near, far) = if d < 0.0 { (range.hi(), range.lo()) } else { (range.lo(), range.hi()) };
+            if d == 0.0 {
+                if !(range.lo() <= o && o <= range.hi()) {
+                    return None;
+                }
+                continue;
+            }
+            for (face, ends, inward) in [(near, &mut entry, 1.0), (far, &mut exit, -1.0)] {
+                // The difference, the quotient and the kernel's product and sum err by less than 4 ulp each of
+                // terms that |o| + |face| bounds: 2^-52 * 16 covers them and the rounding of this very sum.
+                let t = (face - o) / d;
+                let margin = (2.0f64.powi(-48) * (o.abs() + face.abs()) + f64::MIN_POSITIVE) / d.abs();
+                let (outer, inner) = (t - inward * margin, t + inward * margin);
+                if inward > 0.0 {
+                    *ends = [ends[0].max(outer), ends[1].max(inner)];
+                } else {
+                    *ends = [ends[0].min(inner), ends[1].min(outer)];
+                }
+            }
+        }
+        (entry[0] <= exit[1]).then_some((entry, exit))
+    }
+}
+
+/// The rays of one tile. Either origins or directions vary from pixel to pixel; the other is shared.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    pub tile: Tile,
+    pub projection: Projection,
+    /// What all rays share: the origin in perspective, the direction of parallel rays.
+    shared: [f64; 3],
+    /// Column and row terms of what varies, by pixel of the tile: value = column + row, divided by |K| in perspective.
+    columns: [Vec<f64>; 3],
+    rows: [Vec<f64>; 3],
+    /// Bound of the rounding of a direction; see [`Frame::hull`].
+    error: [f64; 3],
+}
+
+impl Frame {
+    pub fn new(camera: &Camera, tile: Tile) -> Self {
+        let base = match camera.projection {
+            Projection::Perspective => camera.forward,
+            Projection::Orthographic => camera.position,
+        };
+        let mut columns = [const { Vec::new() }; 3];
+        let mut rows = [const { Vec::new() }; 3];
+        for c in 0..3 {
+            columns[c] = (tile.x..=tile.last_x).map(|x| base[c] + camera.offsets(x.into(), 0.0).0 * camera.right[c]).collect();
+            rows[c] = (tile.y..=tile.last_y).map(|y| camera.offsets(0.0, y.into()).1 * camera.up[c]).collect();
+        }
+        let mut frame = Self {
+            tile,
+            projection: camera.projection,
+            shared: camera.position.into(),
+            columns,
+            rows,
+            error: [0.0; 3],
+        };
+        match camera.projection {
+            Projection::Orthographic => {
+                let scale = camera.forward[tile.axis].abs();
+                frame.shared = std::array::from_fn(|c| camera.forward[c] / scale);
+                frame.shared[tile.axis] = tile.sign;
+            }
+            Projection::Perspective => {
+                // A direction is the quotient N / D of numbers affine in the pixel's place. Each computed sum of three
+                // terms errs by at most 4 u M, where M bounds the sum of their magnitudes and u = 2^-53, so that the
+                // quotient errs by (4 u M_c + |N/D| 4 u M_K) / D + u |N/D| <= 9 u (M_c / D) (1 + M_K / D).
+                let magnitude = |c: usize| {
+                    let most = |terms: &[f64]| terms.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+                    camera.forward[c].abs() + most(&frame.columns[c]) + most(&frame.rows[c])
+                };
+                let (w, h) = (frame.columns[0].len() - 1, frame.rows[0].len() - 1);
+                let corner = |x: usize, y: usize| (frame.columns[tile.axis][x] + frame.rows[tile.axis][y]).abs();
+                let least = corner(0, 0).min(corner(w, 0)).min(corner(0, h)).min(corner(w, h));
+                let axis = magnitude(tile.axis);
+                frame.error = std::array::from_fn(|c| {
+                    let ratio = magnitude(c) / least;
+                    if c == tile.axis { 0.0 } else { 2.0f64.powi(-49) * ratio * (1.0 + axis / least) }
+                });
+            }
+        }
+        frame
+    }
+
+    /// Pixels across and down that lie inside the picture.
+    pub fn size(&self) -> (u32, u32) {
+        (self.columns[0].len() as u32, self.rows[0].len() as u32)
+    }
+
+    /// What varies from ray to ray, for a pixel counted from the tile's corner.
+    pub fn varying(&self, x: u32, y: u32) -> [f64; 3] {
+        let sum = std::array::from_fn(|c| self.columns[c][x as usize] + self.rows[c][y as usize]);
+        match self.projection {
+            Projection::Orthographic => sum,
+            Projection::Perspective => {
+                let scale = sum[self.tile.axis].abs();
+                let mut direction: [f64; 3] = sum.map(|n| n / scale);
+                direction[self.tile.axis] = self.tile.sign;
+                direction
+            }
+        }
+    }
+
+    /// The ray of a pixel counted from the tile's corner.
+    pub fn ray(&self, x: u32, y: u32) -> Ray {
+        self.ray_of(self.varying(x, y))
+    }
+
+    /// The ray with the given varying part.
+    pub fn ray_of(&self, varying: [f64; 3]) -> Ray {
+        match self.projection {
+            Projection::Perspective => Ray { origin: self.shared, direction: varying },
+            Projection::Orthographic => Ray { origin: varying, direction: self.shared },
+        }
+    }
+
+    /// Encloses the varying part of all rays of the block of `size` pixels at (x, y): lower and upper ends.
+    ///
+    /// Sums are monotone in x and in y, rounding included, so their extremes are at the corners. The exact quotient
+    /// of two affine functions has its extremes over a rectangle at the corners too (it is monotone along any line,
+    /// Boyd and Vandenberghe 2004, section 3.4.1); the computed one differs from it by at most `error`, here and there.
+    pub fn hull(&self, x: u32, y: u32, size: u32) -> ([f64; 3], [f64; 3]) {
+        let (width, height) = self.size();
+        let (right, bottom) = ((x + size).min(width) - 1, (y + size).min(height) - 1);
+        let first = self.varying(x, y);
+        if size == 1 {
+            return (first, first);
+        }
+        let (mut low, mut high) = (first, first);
+        for (x, y) in [(right, y), (x, bottom), (right, bottom)] {
+            let corner = self.varying(x, y);
+            for c in 0..3 {
+                low[c] = low[c].min(corner[c]);
+                high[c] = high[c].max(corner[c]);
+            }
+        }
+        for c in 0..3 {
+            low[c] -= 2.0 * self.error[c];
+            high[c] += 2.0 * self.error[c];
+        }
+        (low, high)
+    }
+
+    /// Encloses the stretch t >= 0 in which rays of a hull are inside the domain; `None` if there is none.
+    pub fn clip(&self, hull: &([f64; 3], [f64; 3]), domain: &[Interval]) -> Option<(f64, f64)> {
+        // A quotient of one rounded difference errs by less than 2^-51 of itself.
+        let widen = |t: f64| t.abs() * 2.0f64.powi(-50) + f64::MIN_POSITIVE;
+        let (mut entry, mut exit) = (0.0f64, f64::INFINITY);
+        for (axis, range) in domain.iter().enumerate() {
+            let (origin, direction) = match self.projection {
+                Projection::Perspective => ([self.shared[axis]; 2], [hull.0[axis], hull.1[axis]]),
+                Projection::Orthographic => ([hull.0[axis], hull.1[axis]], [self.shared[axis]; 2]),
+            };
+            // Some ray can be inside only where o_lo + t d_lo <= hi and o_hi + t d_hi >= lo; both read room >= -t d.
+            for (room, slope) in [(range.hi() - origin[0], -direction[0]), (origin[1] - range.lo(), direction[1])] {
+                if slope == 0.0 {
+                    if room < 0.0 {
+                        return None;
+                    }
+                    continue;
+                }
+                let t = -room / slope;
+                if slope > 0.0 {
+                    entry = entry.max(t - widen(t));
+                } else {
+                    exit = exit.min(t + widen(t));
+                }
+            }
+        }
+        (entry <= exit).then_some((entry, exit))
+    }
+}

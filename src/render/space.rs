@@ -1,0 +1,511 @@
+//! Space scenes: kernels, tiles and layers put together.
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use crate::derive::Arithmetic;
+use crate::derive::Precision;
+use crate::derive::Rounding;
+use crate::diagnostic::Diagnostic;
+use crate::kernel::Backend;
+use crate::program::scene::Parameter;
+use crate::program::scene::Projection;
+use crate::program::scene::Scene;
+use crate::program::scene::Shape;
+use crate::program::scene::ShapeKind;
+use crate::render::Control;
+use crate::render::batch::Program;
+use crate::render::camera::Camera;
+use crate::render::camera::Frame;
+use crate::render::camera::Ray;
+use crate::render::camera::Tile;
+use crate::render::certificate::Certificate;
+use crate::render::grid::Grid;
+use crate::render::march::Context;
+use crate::render::march::Refuted;
+use crate::render::options::Options;
+use crate::render::options::Stop;
+use crate::render::outcome::Outcome;
+use crate::render::picture::Certainty;
+use crate::render::picture::Depth;
+use crate::render::picture::Picture;
+use crate::render::plan::Plan;
+use crate::render::plan::arithmetic;
+use crate::render::programs::Compiled;
+use crate::render::programs::Format;
+use crate::render::programs::Orders;
+use crate::render::programs::Reach;
+use crate::render::shade::Gradients;
+use crate::render::shade::Shading;
+use crate::render::shade::Spot;
+use crate::render::stats::Evaluations;
+use crate::render::stats::Stats;
+use crate::render::stats::median;
+use crate::render::tile::Effort;
+use crate::render::tile::Traced;
+use crate::render::tile::Tracer;
+use crate::render::tile::trace;
+
+/// The deepest cells of beams. Finer ones are left to single rays, whose double precision they would need.
+const LEAF: u8 = 12;
+
+/// Where the rays of a picture are and how far they go; what rendering and verification have in common.
+pub struct Geometry {
+    pub camera: Camera,
+    pub tiles: Vec<Tile>,
+    pub grid: Grid,
+    pub reach: Reach,
+    pub effort: Effort,
+}
+
+impl Geometry {
+    /// # Errors
+    /// If the domain is unbounded (`E0603`), the camera is impossible (`E0601`, `E0602`) or the picture has no pixels or
+    /// too many (`E0604`).
+    pub fn new(scene: &Scene, options: &Options) -> Result<Self, Diagnostic> {
+        if scene.domain.iter().any(|range| !range.is_bounded() || range.is_singleton()) {
+            return Err(Diagnostic::error("E0603", "the domain has no extent or no bounds")
+                .help("give every coordinate a range such as `[-2, 2]`"));
+        }
+        let (width, height) = (options.width, options.height);
+        if width == 0 || height == 0 || width > 1 << 16 || height > 1 << 16 {
+            return Err(Diagnostic::error("E0604", format!("a picture of {width}x{height} pixels cannot be drawn"))
+                .help("write a size such as `512x512`; neither side may exceed 65536 pixels"));
+        }
+        let camera = Camera::new(&scene.view.camera, &scene.domain, (width, height))?;
+        let tiles = camera.tiles();
+        let slab = scene.domain.iter().map(|range| range.width()).fold(0.0, f64::max);
+        let corner = |sign: f64, unit: glam::DVec3, pixels: u32| sign * 0.5 * f64::from(pixels) * unit;
+        let spread = match camera.projection {
+            Projection::Perspective => glam::DVec3::ZERO,
+            Projection::Orthographic => corner(1.0, camera.right, width).abs() + corner(1.0, camera.up, height).abs(),
+        };
+        let origin = (camera.position.abs() + spread).max_element();
+        let far = scene.domain.iter().map(|range| range.mag()).fold(0.0, f64::max);
+        let end = origin + far;
+        let power = |x: f64| x.log2().ceil().exp2();
+        let axis = camera.forward.abs().max_position();
+        let grid = Grid::new(slab, end);
+        let reach = Reach {
+            projection: camera.projection,
+            origin: power(origin.max(f64::MIN_POSITIVE)),
+            end: power(end + 4.0 * grid.unit(0)),
+            axis,
+        };
+        let depth = match options.stop {
+            Stop::Depth(depth) => depth.min(grid.deepest().into()) as u8,
+            // Eq. 6.1: the depth at which a cell of the longest ray is no longer than epsilon.
+            Stop::Epsilon(length) => grid.depth_of(length / longest(&camera, &tiles)),
+            Stop::Tolerance(_) => grid.deepest(),
+        };
+        let single = match options.precision {
+            Precision::Single => grid.deepest_single(),
+            Precision::Double => grid.deepest(),
+        };
+        let effort = Effort {
+            stop: options.stop,
+            depth,
+            leaf: LEAF.min(depth).min(single),
+            poles: options.poles,
+            certificate: options.certificate,
+        };
+        Ok(Self { camera, tiles, grid, reach, effort })
+    }
+
+    /// What the stages of a tile share.
+    pub fn context<'a>(&'a self, frame: &'a Frame, scene: &'a Scene, shape: &Shape) -> Context<'a> {
+        let axis = frame.tile.axis;
+        let perspective = self.camera.projection == Projection::Perspective;
+        let pitch = self.camera.right.length().max(self.camera.up.length());
+        Context {
+            frame,
+            grid: &self.grid,
+            domain: &scene.domain,
+            region: shape.kind == ShapeKind::Region,
+            condition: shape.condition.is_some(),
+            leaf: self.effort.leaf,
+            pitch: if perspective { pitch / self.camera.forward[axis].abs().max(0.25) } else { pitch },
+            perspective,
+        }
+    }
+}
+
+/// The longest direction of all rays.
+fn longest(camera: &Camera, tiles: &[Tile]) -> f64 {
+    let mut longest = 1.0f64;
+    for &tile in tiles {
+        let frame = Frame::new(camera, tile);
+        let (width, height) = frame.size();
+        for (x, y) in [(0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1)] {
+            longest = longest.max(glam::DVec3::from(frame.ray(x, y).direction).length());
+        }
+    }
+    longest
+}
+
+/// A shape's kernels; beams march in `T`.
+struct ShapeKernels<T: Format> {
+    plain: Compiled<T>,
+    slope: Compiled<T>,
+    ends: Compiled<f64>,
+    piece: Compiled<f64>,
+    /// Solids only.
+    face: Option<Compiled<f64>>,
+    root: Compiled<f64>,
+    /// Only if some layer shows normals.
+    gradient: Option<Compiled<f64>>,
+}
+
+impl<T: Format> ShapeKernels<T> {
+    fn new(
+        scene: &Scene,
+        shape: &Shape,
+        geometry: &Geometry,
+        options: &Options,
+        (backend, plan): (&dyn Backend, &mut Plan),
+    ) -> Result<Self, Diagnostic> {
+        let (beams, reason) = arithmetic(&scene.graph, shape.field, options.enclosures);
+        plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
+        let reach = Some(geometry.reach);
+        let orders = Orders { scene, shape, reach, rounding: options.rounding, arithmetic: beams };
+        let double = Precision::Double;
+
+        let spec = orders.plain(beams);
+        plan.kernel(shape, "beam", T::PRECISION, &spec, "refutes cells of beams");
+        let plain = Compiled::new(backend, &spec)?;
+        let spec = orders.slope();
+        plan.kernel(shape, "slope", T::PRECISION, &spec, "settles cells in which the field is monotone along rays");
+        let slope = Compiled::new(backend, &spec)?;
+        let spec = orders.plain(Arithmetic::Interval);
+        plan.kernel(shape, "ends", double, &spec, "proves the signs at the ends of brackets");
+        let ends = Compiled::new(backend, &spec)?;
+        let spec = orders.piece();
+        plan.kernel(shape, "piece", double, &spec, "decides on single rays what beams leave open");
+        let piece = Compiled::new(backend, &spec)?;
+        let spec = orders.root();
+        plan.kernel(shape, "root", double, &spec, "finds hits to shade by Newton's method");
+        let root = Compiled::new(backend, &spec)?;
+        let face = match shape.kind {
+            ShapeKind::Equation => None,
+            ShapeKind::Region => {
+                let spec = orders.face();
+                plan.kernel(shape, "face", double, &spec, "decides where the domain's faces cut a solid");
+                Some(Compiled::new(backend, &spec)?)
+            }
+        };
+        let gradient = if wants_normals(scene, options) {
+            let spec = orders.gradient();
+            plan.kernel(shape, "gradient", double, &spec, "gives the normals that shading or the normal layer needs");
+            Some(Compiled::new(backend, &spec)?)
+        } else {
+            None
+        };
+        Ok(Self { plain, slope, ends, piece, face, root, gradient })
+    }
+
+    fn bind(&self, shape: &Shape, parameters: &[Parameter], constants: &[(&str, f64)]) -> Tracer<T> {
+        let ends = self.ends.bind(parameters, constants);
+        Tracer {
+            kind: shape.kind,
+            condition: shape.condition.is_some(),
+            plain: self.plain.bind(parameters, constants),
+            slope: self.slope.bind(parameters, constants),
+            piece: self.piece.bind(parameters, constants),
+            face: self.face.as_ref().map_or_else(|| ends.clone(), |face| face.bind(parameters, constants)),
+            root: self.root.bind(parameters, constants),
+            ends,
+        }
+    }
+}
+
+/// Whether a layer shows normals, or colours made with them.
+fn wants_normals(scene: &Scene, options: &Options) -> bool {
+    let lit = !matches!(&scene.view.lights, Some(lights) if lights.is_empty());
+    options.layers.normal || options.layers.color && lit
+}
+
+enum Kernels {
+    Single(Vec<ShapeKernels<f32>>),
+    Double(Vec<ShapeKernels<f64>>),
+}
+
+/// A space scene with its kernels, ready to be rendered for any values of its parameters.
+pub struct Space {
+    scene: Scene,
+    options: Options,
+    geometry: Geometry,
+    kernels: Kernels,
+    pub plan: Plan,
+    compile_ms: f64,
+}
+
+impl Space {
+    pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
+        let start = Instant::now();
+        let geometry = Geometry::new(scene, options)?;
+        let mut plan = Plan::default();
+        let kernels = match options.precision {
+            Precision::Single => Kernels::Single(compile(scene, options, &geometry, backend, &mut plan)?),
+            Precision::Double => Kernels::Double(compile(scene, options, &geometry, backend, &mut plan)?),
+        };
+        plan.describe(scene, options);
+        let compile_ms = 1e3 * start.elapsed().as_secs_f64();
+        Ok(Self { scene: scene.clone(), options: options.clone(), geometry, kernels, plan, compile_ms })
+    }
+
+    /// Renders with the given values of the scene's parameters, in the scene's order.
+    pub fn render(&self, parameters: &[Parameter], control: &Control<'_>) -> Result<Picture, Diagnostic> {
+        match &self.kernels {
+            Kernels::Single(kernels) => self.render_with(kernels, parameters, control),
+            Kernels::Double(kernels) => self.render_with(kernels, parameters, control),
+        }
+    }
+
+    /// The inputs that all rays share, for a tile. Parallel rays are scaled to the tile's axis, so they differ by tile.
+    fn constants(&self, tile: Tile) -> [(&'static str, f64); 3] {
+        let ray = Frame::new(&self.geometry.camera, Tile { last_x: tile.x, last_y: tile.y, ..tile }).ray(0, 0);
+        let values = match self.geometry.camera.projection {
+            Projection::Perspective => ray.origin,
+            Projection::Orthographic => ray.direction,
+        };
+        let names = self.geometry.reach.shared();
+        std::array::from_fn(|c| (names[c], values[c]))
+    }
+
+    fn render_with<T: Format>(
+        &self,
+        kernels: &[ShapeKernels<T>],
+        parameters: &[Parameter],
+        control: &Control<'_>,
+    ) -> Result<Picture, Diagnostic> {
+        let tiles = &self.geometry.tiles;
+        // In either projection all tiles share these: the eye is one, and parallel rays have one dominant axis.
+        let constants = self.constants(tiles[0]);
+        let shapes = &self.scene.shapes;
+        let tracers: Vec<Tracer<T>> =
+            kernels.iter().zip(shapes).map(|(kernels, shape)| kernels.bind(shape, parameters, &constants)).collect();
+        let gradients: Vec<Option<(Program<f64>, f64)>> = kernels
+            .iter()
+            .map(|kernels| {
+                let program = kernels.gradient.as_ref()?.bind(parameters, &[]);
+                let usual = Gradients::usual(&program, &self.scene.domain);
+                Some((program, usual))
+            })
+            .collect();
+        let shading = Shading::new(&self.scene.view, &self.geometry.camera, shapes.len());
+        let job = Job { space: self, tracers: &tracers, gradients: &gradients, shading: &shading };
+        let mut times = Vec::new();
+        let mut picture = Picture::default();
+        for _ in 0..self.options.repeat.max(1) {
+            let start = Instant::now();
+            picture = job.picture(control)?;
+            times.push(1e3 * start.elapsed().as_secs_f64());
+        }
+        picture.stats.compile_ms = self.compile_ms;
+        picture.stats.render_ms = median(times);
+        Ok(picture)
+    }
+}
+
+fn compile<T: Format>(
+    scene: &Scene,
+    options: &Options,
+    geometry: &Geometry,
+    backend: &dyn Backend,
+    plan: &mut Plan,
+) -> Result<Vec<ShapeKernels<T>>, Diagnostic> {
+    scene.shapes.iter().map(|shape| ShapeKernels::new(scene, shape, geometry, options, (backend, plan))).collect()
+}
+
+/// One picture under way.
+struct Job<'a, T: Format> {
+    space: &'a Space,
+    tracers: &'a [Tracer<T>],
+    gradients: &'a [Option<(Program<f64>, f64)>],
+    shading: &'a Shading,
+}
+
+/// A finished tile.
+#[derive(Default)]
+struct Finished {
+    certainty: Vec<Certainty>,
+    depth: Vec<Option<Depth>>,
+    color: Vec<[u8; 3]>,
+    normal: Vec<[f32; 3]>,
+    covers: Vec<(Vec<Refuted>, Vec<Outcome>)>,
+    hits: u64,
+    evaluations: Evaluations,
+}
+
+impl<T: Format> Job<'_, T> {
+    fn picture(&self, control: &Control<'_>) -> Result<Picture, Diagnostic> {
+        let tiles = &self.space.geometry.tiles;
+        let finished: Vec<Option<Finished>> = tiles
+            .par_iter()
+            .map(|&tile| {
+                let finished = (!control.is_cancelled()).then(|| self.tile(tile));
+                control.advance(tiles.len());
+                finished
+            })
+            .collect();
+        control.done.store(0, Ordering::Relaxed);
+        let finished: Option<Vec<Finished>> = finished.into_iter().collect();
+        let finished = finished.ok_or_else(Control::cancelled)?;
+        Ok(self.assemble(finished))
+    }
+
+    fn tile(&self, tile: Tile) -> Finished {
+        let Space { scene, options, geometry, .. } = self.space;
+        let frame = Frame::new(&geometry.camera, tile);
+        let mut finished = Finished::default();
+        let mut traced = Vec::with_capacity(self.tracers.len());
+        for (tracer, shape) in self.tracers.iter().zip(&scene.shapes) {
+            let context = geometry.context(&frame, scene, shape);
+            let Traced { outcomes, cover, evaluations } = trace(context, tracer, geometry.effort);
+            finished.evaluations += evaluations;
+            if options.certificate {
+                finished.covers.push((cover, outcomes.clone()));
+            }
+            traced.push(outcomes);
+        }
+        let (width, height) = frame.size();
+        let mut spots: Vec<(usize, Spot)> = Vec::new();
+        for index in 0..(width * height) as usize {
+            let (winner, certainty) = nearest(&traced, index, options.rounding);
+            finished.certainty.push(certainty);
+            let spot = winner.map(|(shape, outcome)| {
+                let ray = frame.ray(index as u32 % width, index as u32 / width);
+                let solid = scene.shapes[shape].kind == ShapeKind::Region;
+                (outcome, Spot { ray, t: outcome.t, shape, surface: outcome.surface, solid })
+            });
+            if options.layers.depth {
+                finished.depth.push(spot.as_ref().map(|(outcome, spot)| depth(outcome, spot)));
+            }
+            spots.extend(spot.map(|(_, spot)| (index, spot)));
+        }
+        finished.hits = spots.len() as u64;
+        self.shade(&frame, &spots, &mut finished);
+        finished
+    }
+
+    /// Fills the layers of colour and normal.
+    fn shade(&self, frame: &Frame, spots: &[(usize, Spot)], finished: &mut Finished) {
+        let Space { scene, options, .. } = self.space;
+        let (width, height) = frame.size();
+        if options.layers.color {
+            finished.color = (frame.tile.y..frame.tile.y + height)
+                .flat_map(|y| std::iter::repeat_n(self.shading.background(y), width as usize))
+                .collect();
+        }
+        if options.layers.normal {
+            finished.normal = vec![[0.0; 3]; (width * height) as usize];
+        }
+        for (shape, gradient) in self.gradients.iter().enumerate() {
+            let spots: Vec<&(usize, Spot)> = spots.iter().filter(|(_, spot)| spot.shape == shape).collect();
+            if spots.is_empty() {
+                continue;
+            }
+            let Some((program, usual)) = gradient else {
+                for (index, _) in spots.iter().filter(|_| options.layers.color) {
+                    finished.color[*index] = self.shading.flat(shape);
+                }
+                continue;
+            };
+            let mut gradients = Gradients::new(program, *usual, &scene.domain);
+            let plain: Vec<Spot> = spots.iter().map(|(_, spot)| *spot).collect();
+            for ((index, spot), normal) in spots.into_iter().zip(gradients.normals(&plain)) {
+                if options.layers.color {
+                    let lit = self.shading.is_lit();
+                    finished.color[*index] = if lit { self.shading.color(spot, normal) } else { self.shading.flat(shape) };
+                }
+                if options.layers.normal {
+                    finished.normal[*index] = normal.as_vec3().into();
+                }
+            }
+            finished.evaluations.gradient += gradients.evaluations();
+        }
+    }
+
+    fn assemble(&self, finished: Vec<Finished>) -> Picture {
+        let Space { options, geometry, .. } = self.space;
+        let (width, height) = (options.width, options.height);
+        let pixels = geometry.camera.pixels();
+        let plane = |wanted: bool| if wanted { pixels } else { 0 };
+        let mut picture = Picture {
+            width,
+            height,
+            certainty: vec![Certainty::Miss; pixels],
+            color: vec![[0; 3]; plane(options.layers.color)],
+            depth: vec![None; plane(options.layers.depth)],
+            normal: vec![[0.0; 3]; plane(options.layers.normal)],
+            stats: Stats::default(),
+            certificate: None,
+        };
+        let mut covers = Vec::new();
+        for (tile, finished) in geometry.tiles.iter().zip(finished) {
+            let columns = (tile.last_x - tile.x + 1) as usize;
+            for (row, y) in (tile.y..=tile.last_y).enumerate() {
+                let to = picture.index(tile.x, y);
+                copy_row(&mut picture.certainty, to, &finished.certainty, row, columns);
+                copy_row(&mut picture.color, to, &finished.color, row, columns);
+                copy_row(&mut picture.depth, to, &finished.depth, row, columns);
+                copy_row(&mut picture.normal, to, &finished.normal, row, columns);
+            }
+            picture.stats.evaluations += finished.evaluations;
+            picture.stats.hits += finished.hits;
+            covers.push(finished.covers);
+        }
+        let count = |kind: Certainty| picture.certainty.iter().filter(|&&c| c == kind).count() as u64;
+        picture.stats.pixels = pixels as u64;
+        picture.stats.threads = rayon::current_num_threads();
+        picture.stats.proved = count(Certainty::Hit);
+        picture.stats.misses = count(Certainty::Miss);
+        picture.stats.unknown = count(Certainty::Unknown) + count(Certainty::Unverified);
+        if options.certificate {
+            picture.certificate = Some(Certificate::new(options, &picture.stats, covers));
+        }
+        picture
+    }
+}
+
+fn copy_row<P: Copy>(plane: &mut [P], to: usize, tile: &[P], row: usize, columns: usize) {
+    if !plane.is_empty() {
+        plane[to..to + columns].copy_from_slice(&tile[row * columns..(row + 1) * columns]);
+    }
+}
+
+/// What is drawn in a pixel, of several shapes, and what is proved of it: the nearest hit, if its own is proved and every
+/// other shape is refuted up to the end of its bracket.
+fn nearest(traced: &[Vec<Outcome>], index: usize, rounding: Rounding) -> (Option<(usize, Outcome)>, Certainty) {
+    let mut winner: Option<(usize, Outcome)> = None;
+    for (shape, outcomes) in traced.iter().enumerate() {
+        let outcome = outcomes[index];
+        if outcome.drawn && winner.is_none_or(|(_, nearest)| outcome.t < nearest.t) {
+            winner = Some((shape, outcome));
+        }
+    }
+    let unknown = match winner {
+        None => traced.iter().any(|outcomes| outcomes[index].unknown),
+        Some((shape, hit)) => {
+            let hidden = |(other, outcomes): (usize, &Vec<Outcome>)| {
+                other != shape && outcomes[index].clear < hit.bracket[1]
+            };
+            hit.unknown || traced.iter().enumerate().any(hidden)
+        }
+    };
+    let certainty = match (rounding, unknown, winner.is_some()) {
+        (Rounding::Nearest, ..) => Certainty::Unverified,
+        (Rounding::Outward, true, _) => Certainty::Unknown,
+        (Rounding::Outward, false, true) => Certainty::Hit,
+        (Rounding::Outward, false, false) => Certainty::Miss,
+    };
+    (winner, certainty)
+}
+
+fn depth(outcome: &Outcome, spot: &Spot) -> Depth {
+    let Ray { direction, .. } = spot.ray;
+    let distance = outcome.t * glam::DVec3::from(direction).length();
+    Depth { shape: spot.shape as u16, surface: outcome.surface, bracket: outcome.bracket, t: outcome.t, distance }
+}
