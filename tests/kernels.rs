@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use imp::codegen::Compiler;
+use imp::codegen::NarrowCompiler;
 use imp::derive::Arithmetic;
 use imp::derive::Output;
 use imp::derive::Rounding;
@@ -116,5 +117,48 @@ fn barth_sextic_agrees_with_the_interpreter() {
         let spec = spec(graph, f, domain, Arithmetic::Interval);
         agree::<f32>(&*Compiler.compile_f32(&spec).unwrap(), &*Interpreter.compile_f32(&spec).unwrap(), 3, 1e-3, 1);
         agree::<f64>(&*Compiler.compile_f64(&spec).unwrap(), &*Interpreter.compile_f64(&spec).unwrap(), 3, 1e-11, 2);
+    }
+}
+
+/// The widening pass changes registers, not results: every lane of every output, bit for bit, for every operation.
+#[test]
+fn widened_kernels_equal_narrow_ones() {
+    let (barth_graph, barth_root) = barth();
+    let mut formulas = vec![(barth_graph, barth_root)];
+    for &op in Op::PLAIN.iter().filter(|op| op.arity() > 0) {
+        let mut graph = Graph::new();
+        let [x, y, z] = ["x", "y", "z"].map(|name| graph.var(name));
+        let operands = [x, y, z];
+        let root = graph.push(op, &operands[..op.arity()]);
+        formulas.push((graph, root));
+    }
+    for (graph, root) in formulas {
+        for (domain, arithmetic) in [(None, Arithmetic::Interval), (Some(3.0), Arithmetic::Affine)] {
+            let spec = spec(graph.clone(), root, domain, arithmetic);
+            same_bits(&*Compiler.compile_f32(&spec).unwrap(), &*NarrowCompiler.compile_f32(&spec).unwrap(), |x| {
+                x.to_bits().into()
+            });
+            same_bits(
+                &*Compiler.compile_f64(&spec).unwrap(),
+                &*NarrowCompiler.compile_f64(&spec).unwrap(),
+                f64::to_bits,
+            );
+        }
+    }
+}
+
+fn same_bits<T: Real>(wide: &dyn Kernel<T>, narrow: &dyn Kernel<T>, bits: fn(T) -> u64) {
+    let mut rng = fastrand::Rng::with_seed(3);
+    for round in 0..50 {
+        let inputs: Vec<Packet<T>> = (0..2).flat_map(|_| fill::<T>(&mut rng, 3, [0.0, 1e-3, 1.0][round % 3])).collect();
+        let [mut a, mut b] = [vec![Packet::<T>::default(); 6], vec![Packet::<T>::default(); 6]];
+        wide.run(&[], &inputs, &mut a);
+        narrow.run(&[], &inputs, &mut b);
+        for (a, b) in a.iter().zip(&b) {
+            assert!(
+                a.lanes().iter().zip(b.lanes()).all(|(&a, &b)| bits(a) == bits(b)),
+                "round {round}: {a:?} is not {b:?}"
+            );
+        }
     }
 }

@@ -126,14 +126,14 @@ impl<'a> Outputs<'a> {
             if let Some(ending) = ending.filter(|ending| ending != "png") {
                 let title = format!("pictures are written as PNG, not as {ending}: `{}`", path.display());
                 let help = format!("write `{}`", path.with_extension("png").display());
-                return Err(Diagnostic::error(code::BAD_ARGUMENT, title).help(help).into());
+                return Err(Diagnostic::error(code::BAD_OPTION, title).help(help).into());
             }
         }
         for path in pictures.into_iter().chain(outputs.certificate) {
             let device = path.exists() && !path.is_file();
             if !device && !seen.insert(path) {
                 let title = format!("two outputs would go to `{}`", path.display());
-                return Err(Diagnostic::error(code::BAD_ARGUMENT, title).into());
+                return Err(Diagnostic::error(code::BAD_OPTION, title).into());
             }
         }
         Ok(outputs)
@@ -172,7 +172,7 @@ fn check_time(arguments: &RenderArguments, scene: &Scene) -> Result<(), Failure>
     } else {
         return Ok(());
     };
-    Err(Diagnostic::error(code::BAD_ARGUMENT, title).into())
+    Err(Diagnostic::error(code::BAD_OPTION, title).into())
 }
 
 /// The parameters with the time of a frame, exactly.

@@ -35,6 +35,15 @@ impl Format for f64 {
     const PRECISION: Precision = Precision::Double;
 }
 
+/// Which registers a kernel uses. No result depends on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Width {
+    /// The widest that the machine has and the widening pass knows how to use.
+    Widest,
+    /// 128 bits, as Cranelift emits.
+    Narrow,
+}
+
 /// A kernel that owns its machine code. Cranelift never makes a page writable and executable at once.
 pub struct JitKernel<T> {
     entry: rounding::Entry,
@@ -50,7 +59,7 @@ pub struct JitKernel<T> {
 unsafe impl<T> Sync for JitKernel<T> {}
 
 impl<T: Format> JitKernel<T> {
-    pub fn new(program: &LaneProgram, rounding: Rounding) -> Result<Self, Diagnostic> {
+    pub fn new(program: &LaneProgram, rounding: Rounding, width: Width) -> Result<Self, Diagnostic> {
         assert_eq!(program.precision, T::PRECISION);
         if !rounding::available() {
             let title = "this machine has no AVX and FMA instructions, which compiled kernels need";
@@ -58,7 +67,7 @@ impl<T: Format> JitKernel<T> {
         }
         let isa = emit::isa(program)?;
         let mut module = JITModule::new(JITBuilder::with_isa(isa.clone(), default_libcall_names()));
-        match define(&mut module, &isa, program) {
+        match define(&mut module, &isa, program, width) {
             Ok(entry) => Ok(Self {
                 entry,
                 rounding,
@@ -77,9 +86,14 @@ impl<T: Format> JitKernel<T> {
     }
 }
 
-/// Compiles to the widest code that the machine runs and the widening pass knows how to make.
-fn define(module: &mut JITModule, isa: &OwnedTargetIsa, program: &LaneProgram) -> Result<rounding::Entry, Diagnostic> {
-    let wide = match widen::available() {
+/// Compiles to the code of the wanted width, or narrower if the widening pass declines.
+fn define(
+    module: &mut JITModule,
+    isa: &OwnedTargetIsa,
+    program: &LaneProgram,
+    width: Width,
+) -> Result<rounding::Entry, Diagnostic> {
+    let wide = match width == Width::Widest && widen::available() {
         true => widen::widen(&emit::machine_code(program, isa, 2 * emit::VECTOR)?),
         false => None,
     };

@@ -16,6 +16,7 @@ use crate::kernel::Kernel;
 
 pub use emit::Emitted;
 pub use emit::emit;
+use jit::Width;
 
 /// The compiling backend. Needs x86-64 with AVX and FMA; elsewhere every order fails with a diagnostic and the caller
 /// falls back to the interpreter.
@@ -23,12 +24,6 @@ pub use emit::emit;
 pub struct Compiler;
 
 impl Compiler {
-    /// Compiles a lane program to a kernel of the precision `T` that the program must have.
-    fn compile<T: jit::Format>(&self, spec: &Spec) -> Result<Arc<dyn Kernel<T>>, Diagnostic> {
-        let program: LaneProgram = spec.lower(T::PRECISION);
-        Ok(Arc::new(jit::JitKernel::<T>::new(&program, spec.rounding)?))
-    }
-
     /// Whether this machine can run what the compiler makes.
     pub fn available() -> bool {
         rounding::available()
@@ -37,12 +32,31 @@ impl Compiler {
 
 impl Backend for Compiler {
     fn compile_f32(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
-        self.compile::<f32>(spec)
+        compile(spec, Width::Widest)
     }
 
     fn compile_f64(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
-        self.compile::<f64>(spec)
+        compile(spec, Width::Widest)
     }
+}
+
+/// The compiler without the widening pass: what widened kernels must equal bit for bit, and what they are timed against.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NarrowCompiler;
+
+impl Backend for NarrowCompiler {
+    fn compile_f32(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
+        compile(spec, Width::Narrow)
+    }
+
+    fn compile_f64(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
+        compile(spec, Width::Narrow)
+    }
+}
+
+fn compile<T: jit::Format>(spec: &Spec, width: Width) -> Result<Arc<dyn Kernel<T>>, Diagnostic> {
+    let program: LaneProgram = spec.lower(T::PRECISION);
+    Ok(Arc::new(jit::JitKernel::<T>::new(&program, spec.rounding, width)?))
 }
 
 /// CLIF and machine code of a program as text, for `imp emit clif` and `imp emit asm`.

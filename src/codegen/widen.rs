@@ -14,8 +14,6 @@ use iced_x86::BlockEncoderOptions;
 use iced_x86::Code;
 use iced_x86::Decoder;
 use iced_x86::DecoderOptions;
-use iced_x86::EncodingKind;
-use iced_x86::FlowControl;
 use iced_x86::Instruction;
 use iced_x86::InstructionBlock;
 use iced_x86::Mnemonic;
@@ -55,7 +53,7 @@ pub fn widen(code: &[u8]) -> Option<Wide> {
     let mut wide = Vec::with_capacity(instructions.len() + 1);
     for (instruction, bytes) in &instructions {
         let new = one(instruction, bytes, &mut pool)?;
-        if new.flow_control() == FlowControl::Return {
+        if new.mnemonic() == Mnemonic::Ret {
             // The upper halves must be clean when code without VEX runs again.
             wide.push(Instruction::with(Code::VEX_Vzeroupper));
         }
@@ -80,7 +78,7 @@ fn decode(code: &[u8]) -> Option<Vec<(Instruction, Vec<u8>)>> {
             return None;
         }
         instructions.push((instruction, code[start..decoder.position()].to_vec()));
-        if instruction.flow_control() == FlowControl::Return {
+        if instruction.mnemonic() == Mnemonic::Ret {
             return Some(instructions);
         }
     }
@@ -110,13 +108,12 @@ impl Pool<'_> {
 }
 
 fn one(old: &Instruction, bytes: &[u8], pool: &mut Pool) -> Option<Instruction> {
-    let mut new = match old.encoding() {
-        EncodingKind::VEX => vector(old, bytes)?,
-        EncodingKind::Legacy => match vector_move(old) {
+    let mut new = match bytes.first()? {
+        0xc4 | 0xc5 => vector(old, bytes)?,
+        _ => match vector_move(old) {
             Some(moved) => moved,
             None => scalar(old)?,
         },
-        _ => return None,
     };
     // Jumps find their targets by the old addresses.
     new.set_ip(old.ip());
@@ -129,7 +126,8 @@ fn one(old: &Instruction, bytes: &[u8], pool: &mut Pool) -> Option<Instruction> 
                 return None;
             }
             new.set_memory_displacement64(old.memory_displacement64().checked_mul(2)?);
-            new.set_memory_displ_size(4);
+            // The encoder picks the short form where the doubled offset still fits it.
+            new.set_memory_displ_size(8);
         }
     }
     Some(new)
@@ -141,12 +139,12 @@ fn vector(old: &Instruction, bytes: &[u8]) -> Option<Instruction> {
     match old.mnemonic() {
         Vaddps | Vaddpd | Vsubps | Vsubpd | Vmulps | Vmulpd | Vdivps | Vdivpd | Vsqrtps | Vsqrtpd | Vminps | Vminpd
         | Vmaxps | Vmaxpd | Vandps | Vandpd | Vandnps | Vandnpd | Vorps | Vorpd | Vxorps | Vxorpd | Vpand | Vpandn
-        | Vpor | Vpxor | Vcmpps | Vcmppd | Vblendvps | Vblendvpd | Vpblendvb | Vroundps | Vroundpd | Vpaddd | Vpaddq
-        | Vpsubd | Vpsubq | Vpcmpeqd | Vpcmpeqq | Vpcmpgtd | Vpcmpgtq | Vmovups | Vmovupd | Vmovdqu | Vmovaps | Vmovapd
-        | Vmovdqa | Vfmadd132ps | Vfmadd213ps | Vfmadd231ps | Vfmadd132pd | Vfmadd213pd | Vfmadd231pd | Vfmsub132ps
-        | Vfmsub213ps | Vfmsub231ps | Vfmsub132pd | Vfmsub213pd | Vfmsub231pd | Vfnmadd132ps | Vfnmadd213ps
-        | Vfnmadd231ps | Vfnmadd132pd | Vfnmadd213pd | Vfnmadd231pd | Vfnmsub132ps | Vfnmsub213ps | Vfnmsub231ps
-        | Vfnmsub132pd | Vfnmsub213pd | Vfnmsub231pd => {}
+        | Vpor | Vpxor | Vcmpps | Vcmppd | Vblendvps | Vblendvpd | Vpblendvb | Vroundps | Vroundpd | Vpaddd
+        | Vpaddq | Vpsubd | Vpsubq | Vpcmpeqd | Vpcmpeqq | Vpcmpgtd | Vpcmpgtq | Vmovups | Vmovupd | Vmovdqu
+        | Vmovaps | Vmovapd | Vmovdqa | Vfmadd132ps | Vfmadd213ps | Vfmadd231ps | Vfmadd132pd | Vfmadd213pd
+        | Vfmadd231pd | Vfmsub132ps | Vfmsub213ps | Vfmsub231ps | Vfmsub132pd | Vfmsub213pd | Vfmsub231pd
+        | Vfnmadd132ps | Vfnmadd213ps | Vfnmadd231ps | Vfnmadd132pd | Vfnmadd213pd | Vfnmadd231pd | Vfnmsub132ps
+        | Vfnmsub213ps | Vfnmsub231ps | Vfnmsub132pd | Vfnmsub213pd | Vfnmsub231pd => {}
         // By a fixed number of bits only: a count in a register is read from 128 bits in both widths, but none is used.
         Vpslld | Vpsllq | Vpsrld | Vpsrlq if old.op_kind(2) == OpKind::Immediate8 => {}
         Vbroadcastss if old.op_kind(1) == OpKind::Memory => return without_constants(old, with_length(bytes)?),
@@ -207,8 +205,8 @@ fn ymm(register: Register) -> Option<Register> {
 /// Pointers, counters and the frame. The frame's size doubles with all that lies in it.
 fn scalar(old: &Instruction) -> Option<Instruction> {
     use Mnemonic::*;
-    let touches_vectors = (0..old.op_count())
-        .any(|i| old.op_kind(i) == OpKind::Register && old.op_register(i).is_vector_register());
+    let touches_vectors =
+        (0..old.op_count()).any(|i| old.op_kind(i) == OpKind::Register && old.op_register(i).is_vector_register());
     if touches_vectors {
         return None;
     }

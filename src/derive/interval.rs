@@ -409,7 +409,8 @@ impl Lowering<'_> {
     fn output(&mut self, output: Output, slots: &mut Vec<Lane>) {
         let form = self.at(output.value());
         let b = &mut self.b;
-        let empty = b.or(form.empty, self.outside);
+        let refutation = matches!(output, Output::Refutation(_));
+        let empty = if refutation { form.empty } else { b.or(form.empty, self.outside) };
         if let Output::Enclosure(_) = output {
             // The empty set as both ends at minus infinity: lo = +inf, hi = -inf.
             let nothing = b.number(f64::NEG_INFINITY);
@@ -420,7 +421,7 @@ impl Lowering<'_> {
         let filled = b.not(empty);
         let positive = b.less(form.ends.nlo, zero);
         let negative = b.less(form.ends.hi, zero);
-        let inside = b.and(form.continuous, self.inside);
+        let inside = if refutation { Mask::False } else { b.and(form.continuous, self.inside) };
         let mut word = b.bits_where(empty, EMPTY);
         for (mask, bit) in [(positive, POSITIVE), (negative, NEGATIVE), (inside, CONTINUOUS)] {
             let mask = b.and(mask, filled);

@@ -21,6 +21,7 @@ pub fn bounds(spec: &Spec, real: &[Decorated], precision: Precision) -> Vec<f64>
         Precision::Double => f64::MAX / 4.0,
     };
     let mut magnitudes: Vec<f64> = Vec::with_capacity(spec.graph.len());
+    let mut constant: Vec<bool> = Vec::with_capacity(spec.graph.len());
     for (value, node) in spec.graph.iter() {
         let at = |i: usize| magnitudes[node.operands()[i].index()];
         let own = real[value.index()].interval();
@@ -61,6 +62,11 @@ pub fn bounds(spec: &Spec, real: &[Decorated], precision: Precision) -> Vec<f64>
             | Op::SelectJump
             | Op::Entire => f64::INFINITY,
         };
+        // A constant subgraph is stored as its enclosure, whatever computes it.
+        let is_constant = !matches!(node.op, Op::Var(_) | Op::Entire)
+            && node.operands().iter().all(|operand| constant[operand.index()]);
+        constant.push(is_constant);
+        let computed = if is_constant && !own.is_empty() { own.mag() } else { computed };
         // A clipped value is as large as its range, whatever computes it.
         let clipped = spec.domain.iter().filter(|(v, _)| *v == value).map(|(_, range)| range.mag());
         let computed = clipped.fold(computed, f64::min);

@@ -63,12 +63,17 @@ pub enum Output {
     Enclosure(Value),
     /// Verdict bits alone (`kernel::verdict`): one slot.
     Verdict(Value),
+    /// The verdict bits that can refute a zero, `POSITIVE`, `NEGATIVE` and `EMPTY`, the last only where the value is
+    /// undefined and not for boxes outside the domain: one slot, and cheaper than a verdict.
+    Refutation(Value),
 }
 
 impl Output {
     pub fn value(self) -> Value {
         match self {
-            Output::Value(value) | Output::Enclosure(value) | Output::Verdict(value) => value,
+            Output::Value(value) | Output::Enclosure(value) | Output::Verdict(value) | Output::Refutation(value) => {
+                value
+            }
         }
     }
 }

@@ -115,7 +115,7 @@ codes! {
     /// A file that cannot be written.
     CANNOT_WRITE = "E0404";
     /// Arguments of a command that do not fit together or do not fit the scene.
-    BAD_ARGUMENT = "E0405";
+    BAD_OPTION = "E0405";
     /// A scene that is not in canonical layout, where that was asked.
     NOT_FORMATTED = "E0406";
     /// Formulas so large that compiling them takes a while.

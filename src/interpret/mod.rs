@@ -183,7 +183,7 @@ impl Program {
             slots.next().expect("the slots of all outputs").lanes_mut()[lane] = number;
         };
         for &output in &self.outputs {
-            let (interval, verdict) = enclosed.output(output.value());
+            let (interval, bits) = enclosed.output(output.value());
             if let Output::Enclosure(_) = output {
                 let (lo, hi) = if interval.is_empty() {
                     (f64::INFINITY, f64::NEG_INFINITY)
@@ -193,7 +193,8 @@ impl Program {
                 store(T::up(-lo));
                 store(T::up(hi));
             }
-            store(T::from_verdict(verdict));
+            let refutation = matches!(output, Output::Refutation(_));
+            store(T::from_verdict(if refutation { bits & !verdict::CONTINUOUS } else { bits }));
         }
     }
 
@@ -231,7 +232,7 @@ impl<T: Real> Kernel<T> for Program {
 
     fn output_slots(&self) -> usize {
         let slots = |output: &Output| match output {
-            Output::Value(_) | Output::Verdict(_) => 1,
+            Output::Value(_) | Output::Verdict(_) | Output::Refutation(_) => 1,
             Output::Enclosure(_) => 3,
         };
         self.outputs.iter().map(slots).sum()

@@ -242,7 +242,8 @@ impl Frame {
         let mut columns = [const { Vec::new() }; 3];
         let mut rows = [const { Vec::new() }; 3];
         for c in 0..3 {
-            columns[c] = (tile.x..=tile.last_x).map(|x| base[c] + camera.offsets(x.into(), 0.0).0 * camera.right[c]).collect();
+            columns[c] =
+                (tile.x..=tile.last_x).map(|x| base[c] + camera.offsets(x.into(), 0.0).0 * camera.right[c]).collect();
             rows[c] = (tile.y..=tile.last_y).map(|y| camera.offsets(0.0, y.into()).1 * camera.up[c]).collect();
         }
         let mut frame = Self {

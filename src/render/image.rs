@@ -54,7 +54,8 @@ fn encode(picture: &Picture, layer: Layer) -> (Vec<u8>, ExtendedColorType) {
             let scale = if far > near { 1.0 / (far - near) } else { 0.0 };
             // The lowest tenth of the scale is left to nothing at all.
             let code = |distance: f64| (65535.0 * (1.0 - 0.9 * (distance - near) * scale)).round() as u16;
-            let pixel = |depth: &Option<_>| depth.as_ref().map_or(0, |d: &crate::render::picture::Depth| code(d.distance));
+            let pixel =
+                |depth: &Option<_>| depth.as_ref().map_or(0, |d: &crate::render::picture::Depth| code(d.distance));
             // The encoder takes 16-bit samples in the machine's byte order.
             let bytes = picture.depth.iter().flat_map(|depth| pixel(depth).to_ne_bytes()).collect();
             (bytes, ExtendedColorType::L16)
@@ -78,7 +79,10 @@ pub fn write_png(picture: &Picture, layer: Layer, path: &Path) -> Result<(), Dia
 ///
 /// # Errors
 /// If the file cannot be written (`E0610`).
-pub fn write_file(path: &Path, write: impl FnOnce(&mut BufWriter<&std::fs::File>) -> io::Result<()>) -> Result<(), Diagnostic> {
+pub fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&std::fs::File>) -> io::Result<()>,
+) -> Result<(), Diagnostic> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

@@ -39,7 +39,14 @@ pub struct Plan {
 
 impl Plan {
     /// Adds a kernel.
-    pub fn kernel(&mut self, shape: &Shape, name: &'static str, precision: Precision, spec: &Spec, reason: &'static str) {
+    pub fn kernel(
+        &mut self,
+        shape: &Shape,
+        name: &'static str,
+        precision: Precision,
+        spec: &Spec,
+        reason: &'static str,
+    ) {
         let roots: Vec<Value> = spec.outputs.iter().map(|output| output.value()).collect();
         let needed = spec.graph.reachable(&roots);
         let operations = spec.graph.iter().filter(|(v, node)| needed[v.index()] && node.op.arity() > 0).count();

@@ -279,6 +279,7 @@ fn simplify(
         Output::Value(_) => Output::Value(value),
         Output::Enclosure(_) => Output::Enclosure(value),
         Output::Verdict(_) => Output::Verdict(value),
+        Output::Refutation(_) => Output::Refutation(value),
     });
     let outputs = outputs.collect();
     let domain = domain.into_iter().zip(&results[count..]).map(|((_, range), &value)| (value, range)).collect();

@@ -85,7 +85,18 @@ impl<'a> Solver<'a> {
         let (x, y) = place(job.pixel);
         let ray = self.context.frame.varying(x, y);
         let t = 0.5 * (job.a + job.b);
-        Trial { ray, lo: job.a, hi: job.b, t, slope: 0.0, depth: self.depth, cell: 0, start: job.a, end: job.b, open: true }
+        Trial {
+            ray,
+            lo: job.a,
+            hi: job.b,
+            t,
+            slope: 0.0,
+            depth: self.depth,
+            cell: 0,
+            start: job.a,
+            end: job.b,
+            open: true,
+        }
     }
 
     /// Newton's method, kept inside a bracket that each value's sign tightens. Nothing is proved here.

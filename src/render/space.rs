@@ -418,7 +418,8 @@ impl<T: Format> Job<'_, T> {
             for ((index, spot), normal) in spots.into_iter().zip(gradients.normals(&plain)) {
                 if options.layers.color {
                     let lit = self.shading.is_lit();
-                    finished.color[*index] = if lit { self.shading.color(spot, normal) } else { self.shading.flat(shape) };
+                    finished.color[*index] =
+                        if lit { self.shading.color(spot, normal) } else { self.shading.flat(shape) };
                 }
                 if options.layers.normal {
                     finished.normal[*index] = normal.as_vec3().into();
@@ -489,9 +490,8 @@ fn nearest(traced: &[Vec<Outcome>], index: usize, rounding: Rounding) -> (Option
     let unknown = match winner {
         None => traced.iter().any(|outcomes| outcomes[index].unknown),
         Some((shape, hit)) => {
-            let hidden = |(other, outcomes): (usize, &Vec<Outcome>)| {
-                other != shape && outcomes[index].clear < hit.bracket[1]
-            };
+            let hidden =
+                |(other, outcomes): (usize, &Vec<Outcome>)| other != shape && outcomes[index].clear < hit.bracket[1];
             hit.unknown || traced.iter().enumerate().any(hidden)
         }
     };

@@ -3,6 +3,7 @@
 use crate::kernel::Real;
 use crate::program::scene::ShapeKind;
 use crate::render::batch::Program;
+use crate::render::camera::TILE;
 use crate::render::finish::Finisher;
 use crate::render::finish::Onward;
 use crate::render::march::Context;
@@ -15,7 +16,6 @@ use crate::render::outcome::Surface;
 use crate::render::solve::Settlement;
 use crate::render::solve::Solver;
 use crate::render::stats::Evaluations;
-use crate::render::camera::TILE;
 
 /// Pixels that wait for the solver and the single rays before beams are interrupted for them: several packets each.
 const ENOUGH: usize = 256;
@@ -90,7 +90,8 @@ pub fn trace<T: Real>(context: Context<'_>, tracer: &Tracer<T>, effort: Effort) 
     let [beam, slope] = march.evaluations();
     let [root, solver_ends] = solver.evaluations();
     let [piece, ends, face] = finisher.evaluations();
-    let evaluations = Evaluations { beam, slope, root, ends: solver_ends + ends, piece, face, ..Evaluations::default() };
+    let evaluations =
+        Evaluations { beam, slope, root, ends: solver_ends + ends, piece, face, ..Evaluations::default() };
     let (width, height) = context.frame.size();
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| pixel(x, y)));
     Traced {
