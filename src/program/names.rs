@@ -50,10 +50,18 @@ pub(super) struct Program {
 pub(super) struct ProgramFile {
     pub id: FileId,
     pub module: Rc<Module>,
-    /// Whether it belongs to the standard library.
-    pub library: bool,
+    pub origin: Origin,
     own: HashMap<String, ItemId>,
     imports: Vec<usize>,
+}
+
+/// What is known of a file beside its module.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Origin {
+    /// Whether it belongs to the standard library.
+    pub library: bool,
+    /// Whether the parser left statements out of the module.
+    pub faulty: bool,
 }
 
 /// One `let`, `fn`, `param` or named shape.
@@ -84,6 +92,7 @@ impl Program {
     pub fn load(
         sources: &mut SourceMap,
         main: (FileId, Module),
+        faulty: bool,
         variables: HashSet<String>,
         importer: &dyn Importer,
         diagnostics: &mut Vec<Diagnostic>,
@@ -91,7 +100,7 @@ impl Program {
         let mut program = Program { variables, ..Program::default() };
         let path = import::resolve_path("", &sources.get(main.0).name).to_string_lossy().into_owned();
         program.by_path.insert(path, 0);
-        program.add_file(main.0, main.1, false, diagnostics);
+        program.add_file(main.0, main.1, Origin { library: false, faulty }, diagnostics);
         program.load_imports(sources, importer, diagnostics);
         program.analyse(sources, diagnostics);
         program
@@ -138,7 +147,7 @@ impl Program {
     }
 
     /// Registers a file's definitions; its imports come later.
-    fn add_file(&mut self, id: FileId, module: Module, library: bool, diagnostics: &mut Vec<Diagnostic>) -> usize {
+    fn add_file(&mut self, id: FileId, module: Module, origin: Origin, diagnostics: &mut Vec<Diagnostic>) -> usize {
         let file = self.files.len();
         let mut own: HashMap<String, ItemId> = HashMap::new();
         for (statement, name) in module.statements.iter().enumerate().filter_map(|(i, s)| Some((i, defined_name(s)?))) {
@@ -151,7 +160,7 @@ impl Program {
                 self.items.push(Item { name: name.clone(), file, statement, broken: false });
             }
         }
-        self.files.push(ProgramFile { id, module: Rc::new(module), library, own, imports: Vec::new() });
+        self.files.push(ProgramFile { id, module: Rc::new(module), origin, own, imports: Vec::new() });
         file
     }
 
@@ -219,8 +228,9 @@ impl Program {
         };
         let id = sources.add(key.clone(), text.as_str());
         let (module, faults) = syntax::parse(id, &text);
+        let origin = Origin { library: false, faulty: !faults.is_empty() };
         diagnostics.extend(faults);
-        let file = self.add_file(id, module, false, diagnostics);
+        let file = self.add_file(id, module, origin, diagnostics);
         self.by_path.insert(key, file);
         Some(file)
     }
@@ -233,8 +243,9 @@ impl Program {
         }
         let id = sources.add(path, text);
         let (module, faults) = syntax::parse(id, text);
+        let origin = Origin { library: true, faulty: !faults.is_empty() };
         diagnostics.extend(faults);
-        let file = self.add_file(id, module, true, diagnostics);
+        let file = self.add_file(id, module, origin, diagnostics);
         self.by_path.insert(path.to_owned(), file);
         file
     }
@@ -380,7 +391,9 @@ impl Program {
                 scan.diagnostics.push(errors::ambiguous_name(name, span, place(first), place(second)));
             }
             Lookup::Unknown => {
-                if scan.reported.insert((file, name.to_owned())) {
+                let lost =
+                    self.files[file].origin.faulty && is_introduced(name, &scan.sources.get(self.files[file].id).text);
+                if !lost && scan.reported.insert((file, name.to_owned())) {
                     let diagnostic = errors::unknown_name(name, span, used.called);
                     scan.diagnostics.push(self.help_unknown(diagnostic, file, name, used));
                 }
@@ -442,6 +455,22 @@ struct Scan<'a> {
     sources: &'a mut SourceMap,
     diagnostics: &'a mut Vec<Diagnostic>,
     reported: HashSet<(usize, String)>,
+}
+
+/// Whether a text holds the name right after a keyword that defines names: the parser may have left the definition out.
+fn is_introduced(name: &str, text: &str) -> bool {
+    const KEYWORDS: [&str; 5] = ["let", "fn", "param", "surface", "curve"];
+    let mut words = text.split_whitespace();
+    while let Some(word) = words.next() {
+        let next = words.clone().next().unwrap_or("");
+        let rest = next.strip_prefix(name);
+        if KEYWORDS.contains(&word)
+            && rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+        {
+            return true;
+        }
+    }
+    false
 }
 
 /// The name that a statement defines.

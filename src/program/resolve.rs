@@ -46,16 +46,18 @@ pub struct Context<'a> {
     pub overrides: &'a [(String, Interval)],
 }
 
-/// Resolves a parsed file. The scene is absent if there is any error; what the parser had to say is not repeated.
+/// Resolves what [`crate::syntax::parse`] gave for a file. The scene is absent if there is any error, of the parser or of
+/// this layer; the messages are those of both in the order of the text. What only follows from a statement that the
+/// parser left out is not reported.
 pub fn resolve(
     sources: &mut SourceMap,
     file: FileId,
-    module: Module,
+    (module, mut diagnostics): (Module, Vec<Diagnostic>),
     context: &Context,
 ) -> (Option<Scene>, Vec<Diagnostic>) {
     let empty = module.statements.is_empty();
-    let mut diagnostics = Vec::new();
-    let program = Program::load(sources, (file, module), HashSet::new(), context.importer, &mut diagnostics);
+    let faulty = !diagnostics.is_empty();
+    let program = Program::load(sources, (file, module), faulty, HashSet::new(), context.importer, &mut diagnostics);
     let mut lowerer = Lowerer::new(&program, context.differentiate);
     lowerer.evaluate_items();
     let mut shapes = lower_shapes(&mut lowerer);
@@ -125,10 +127,12 @@ pub fn resolve_expression(
     let kind = StatementKind::Let { name, value: expression.clone() };
     module.statements.push(crate::syntax::ast::Statement { span: expression.span, doc: Vec::new(), kind });
     let main = (expression.span.file, module);
-    let program = Program::load(sources, main, variables.clone(), context.importer, &mut diagnostics);
+    let program = Program::load(sources, main, false, variables.clone(), context.importer, &mut diagnostics);
     let mut lowerer = Lowerer::new(&program, context.differentiate);
     lowerer.evaluate_items();
-    let parameters = parameters(&mut lowerer, context.overrides);
+    let mut parameters = parameters(&mut lowerer, context.overrides);
+    // Time passes in scenes alone; here `t` is a variable like any other.
+    parameters.retain(|parameter| parameter.name != TIME);
     let meaning = lowerer.name("");
     let value = match as_truth(&meaning) {
         Some(truth) => Some(truth.value),
@@ -174,7 +178,7 @@ pub fn resolve_constant(
         },
     };
     let main = (expression.span.file, Module { statements: vec![statement] });
-    let program = Program::load(sources, main, HashSet::new(), context.importer, &mut diagnostics);
+    let program = Program::load(sources, main, false, HashSet::new(), context.importer, &mut diagnostics);
     let mut lowerer = Lowerer::new(&program, context.differentiate);
     lowerer.evaluate_items();
     let value = lowerer.constant_interval(expression, "this value");
@@ -357,11 +361,8 @@ fn check_dimension(lowerer: &mut Lowerer, shapes: &mut [Lowered], written: Optio
     let mut taken: HashSet<String> = shapes.iter().map(|lowered| lowered.shape.name.clone()).collect();
     for (index, lowered) in shapes.iter_mut().enumerate().filter(|(_, lowered)| lowered.shape.name.is_empty()) {
         let word = if dimension == 3 { "surface" } else { "curve" };
-        let mut name = format!("{word}{}", index + 1);
-        while !taken.insert(name.clone()) {
-            name.push('\'');
-        }
-        lowered.shape.name = name;
+        let mut names = (index + 1..).map(|number| format!("{word}{number}"));
+        lowered.shape.name = names.find(|name| taken.insert(name.clone())).unwrap_or_default();
     }
     dimension
 }
