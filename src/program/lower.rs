@@ -159,7 +159,9 @@ impl<'p> Lowerer<'p> {
         // Once, wherever it happens first; everything after it is given up too.
         if !self.exhausted {
             self.exhausted = true;
-            self.report(errors::too_much_expansion(span));
+            // The call that was written, not the one among millions at which patience ended.
+            let call = self.frames.iter().find_map(|frame| frame.call.as_ref());
+            self.diagnostics.push(errors::too_much_expansion(call.map_or(span, |(_, span)| *span)));
         }
         false
     }
