@@ -91,10 +91,19 @@ fn agree<T: Real>(kernel: &dyn Kernel<T>, reference: &dyn Kernel<T>, slots: usiz
         for lane in 0..T::LANES {
             let [nlo, hi] = [0, 1].map(|i| got[i].lanes()[lane].to_f64());
             let [ref_nlo, ref_hi] = [0, 1].map(|i| expected[i].lanes()[lane].to_f64());
-            assert!(nlo >= -ref_hi && hi >= -ref_nlo, "seed {seed} round {round}: [{}, {hi}] misses [{}, {ref_hi}]", -nlo, -ref_nlo);
+            assert!(
+                nlo >= -ref_hi && hi >= -ref_nlo,
+                "seed {seed} round {round}: [{}, {hi}] misses [{}, {ref_hi}]",
+                -nlo,
+                -ref_nlo
+            );
             let scale = ref_nlo.abs().max(ref_hi.abs()).max(1.0);
-            assert!((nlo - ref_nlo).abs() <= slack * scale && (hi - ref_hi).abs() <= slack * scale,
-                "seed {seed} round {round}: [{}, {hi}] is far from [{}, {ref_hi}]", -nlo, -ref_nlo);
+            assert!(
+                (nlo - ref_nlo).abs() <= slack * scale && (hi - ref_hi).abs() <= slack * scale,
+                "seed {seed} round {round}: [{}, {hi}] is far from [{}, {ref_hi}]",
+                -nlo,
+                -ref_nlo
+            );
             let (word, ref_word) = (got[2].lanes()[lane].verdict(), expected[2].lanes()[lane].verdict());
             assert_eq!(word & !ref_word, 0, "seed {seed} round {round}: the kernel claims more than the reference");
         }

@@ -367,7 +367,7 @@ fn expressions_name_their_variables() {
 #[test]
 fn expressions_see_definitions() {
     let mut sources = SourceMap::default();
-    let text = "fn f(u) = u^2 + a + k\nlet a = 1\nparam k = 3 in [0, 5]\nsurface s: x = 1\ndomain [0, 1]^3";
+    let text = "let a = 7\nfn f(u) = u^2 + a + k\nlet a = 1\nparam k = 3 in [0, 5]\nsurface s: x = 1\ndomain [0, 1]^3";
     let file = sources.add("definitions", text);
     let (definitions, faults) = syntax::parse(file, text);
     assert!(faults.is_empty());

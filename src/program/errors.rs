@@ -89,6 +89,14 @@ pub(super) fn positional_after_named(function: &str, span: Span) -> Diagnostic {
         .at(span, "move it to the front or name it")
 }
 
+/// A shape that is used in a formula although only a part of it is drawn.
+pub(super) fn conditional_shape(name: &str, span: Span, definition: Span) -> Diagnostic {
+    Diagnostic::error(code::WRONG_KIND, format!("`{name}` has a `where` and cannot be used in a formula"))
+        .at(span, "used here")
+        .at(definition, "kept in part only")
+        .help("give its formula a name with `let` and use that in both places")
+}
+
 /// An equation (or `!=`) where an inside is needed.
 pub(super) fn equation_as_solid(span: Span) -> Diagnostic {
     Diagnostic::error(code::EQUATION_AS_SOLID, "an equation has no inside, so it cannot be a solid")
