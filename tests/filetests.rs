@@ -1,11 +1,14 @@
 //! Tests that are readable files. `tests/filetests/FOLDER/NAME.txt` holds an input, a line `----` and the expected
 //! output; each folder has one function from input to output. With `IMP_BLESS=1` the outputs found are written back.
 
+use std::collections::HashMap;
 use std::fs;
+use std::io;
 use std::panic::AssertUnwindSafe;
 use std::panic::catch_unwind;
 use std::path::Path;
 
+use imp::derive::derivative;
 use imp::diagnostic::FileId;
 use imp::diagnostic::SourceMap;
 use imp::diagnostic::render;
@@ -13,6 +16,11 @@ use imp::graph;
 use imp::graph::Graph;
 use imp::interval::Interval;
 use imp::passes;
+use imp::program;
+use imp::program::Context;
+use imp::program::Importer;
+use imp::program::Scene;
+use imp::program::scene::View;
 use imp::syntax;
 
 /// Between input and expectation, alone on its line.
@@ -118,4 +126,67 @@ fn syntax() {
     check("syntax_ast", syntax_trees);
     check("syntax_tokens", syntax::dump::tokens);
     check("syntax_format", |input| syntax::format::format(FileId(0), input).unwrap());
+
+/// Files held in memory, for `import`.
+struct Files(HashMap<String, String>);
+
+impl Importer for Files {
+    fn read(&self, path: &Path) -> io::Result<String> {
+        self.0.get(&*path.to_string_lossy()).cloned().ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+
+    fn names(&self, _: &Path) -> Vec<String> {
+        let mut names: Vec<String> = self.0.keys().cloned().collect();
+        names.sort();
+        names
+    }
+}
+
+/// A source file through parser and resolver: the scene as text, or the messages. Further files follow lines such as
+/// `== part.imp`; a line `set NAME = VALUE` at the very start sets a parameter from outside.
+fn resolved(input: &str) -> String {
+    let mut overrides = Vec::new();
+    let mut input = input;
+    while let Some((line, rest)) = input.strip_prefix("set ").and_then(|rest| rest.split_once('\n')) {
+        let (name, value) = line.split_once(" = ").unwrap();
+        overrides.push((name.to_owned(), Interval::point(value.parse().unwrap())));
+        input = rest;
+    }
+    let mut parts = input.split("== ");
+    let main = parts.next().unwrap();
+    let files = parts.map(|part| part.split_once('\n').unwrap()).map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let importer = Files(files.collect());
+    let differentiate = |graph: &mut Graph, f, by| derivative(graph, f, by);
+    let context = Context { importer: &importer, differentiate: &differentiate, overrides: &overrides };
+    let mut sources = SourceMap::default();
+    let file = sources.add("main.imp", main);
+    let (scene, diagnostics) = program::resolve(&mut sources, file, syntax::parse(file, main), &context);
+    match scene {
+        Some(scene) => format!("{}{}", scene_text(&scene), render(&sources, &diagnostics, false)),
+        None => render(&sources, &diagnostics, false),
+    }
+}
+
+fn scene_text(scene: &Scene) -> String {
+    let ranges: Vec<String> = scene.domain.iter().map(|range| format!("[{}, {}]", range.lo(), range.hi())).collect();
+    let chosen = if scene.domain_given { "" } else { " (chosen)" };
+    let mut text = format!("domain {}{chosen}\n", ranges.join(" x "));
+    for shape in &scene.shapes {
+        let condition = shape.condition.map(|value| format!(" where {value}")).unwrap_or_default();
+        text += &format!("{:?} {} = {}{condition}\n", shape.kind, shape.name, shape.field);
+    }
+    for parameter in &scene.parameters {
+        let range = parameter.range.map(|range| format!(" in [{}, {}]", range.lo(), range.hi())).unwrap_or_default();
+        text += &format!("param {} = {}{range}\n", parameter.name, parameter.value.mid());
+    }
+    if scene.view != View::default() {
+        text += &format!("{:?}\n", scene.view);
+    }
+    text + &scene.graph.to_string()
+}
+
+#[test]
+fn program() {
+    check("program", resolved);
+    check("program_errors", resolved);
 }

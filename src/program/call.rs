@@ -260,7 +260,8 @@ impl Lowerer<'_> {
             Lowering::Cross => match self.two_lists(builtin, args, span) {
                 Some((a, b)) if a.len() == 3 => self.cross(&a, &b),
                 Some((a, _)) => {
-                    self.report(errors::lengths_differ(a.len(), 3, span));
+                    let found = format!("lists of {}", a.len());
+                    self.report(errors::wrong_kind(&needs("lists of three numbers"), &found, span));
                     Meaning::Invalid
                 }
                 None => Meaning::Invalid,

@@ -57,7 +57,7 @@ impl Lowerer<'_> {
 }
 
 /// The domain of a scene of `dimension` coordinates that gives none: a box that holds all of the shapes with a small
-/// margin, if the natural interval extension proves within a bounded cost that nothing of them lies outside (up to
+/// margin (an eighth to a third), if the natural interval extension proves within a bounded cost that nothing of them lies outside (up to
 /// [`LARGEST`]); else [-4, 4]^n.
 ///
 /// Parameters vary over their ranges and the time over all reals; if that leaves the shapes unbounded, the values that
@@ -71,6 +71,8 @@ pub(super) fn default_domain(
     let widest = |p: &Parameter| p.range.unwrap_or(Interval::ENTIRE);
     let current = |p: &Parameter| p.value;
     let attempts: [&dyn Fn(&Parameter) -> Interval; 2] = [&widest, &current];
+    // Without parameters both are the same.
+    let attempts = if parameters.is_empty() { &attempts[..1] } else { &attempts };
     let found = attempts.iter().find_map(|range| {
         let ranges: Vec<(&str, Interval)> = parameters.iter().map(|p| (p.name.as_str(), range(p))).collect();
         Search::new(graph, shapes, &ranges, dimension).fit()
@@ -112,6 +114,10 @@ impl<'g> Search<'g> {
     }
 
     fn fit(&mut self) -> Option<Vec<Interval>> {
+        // Of a few cells nothing comes.
+        if self.work < 20 * self.enclosures.cost() {
+            return None;
+        }
         let mut radius = LARGEST;
         while radius > SMALLEST && self.shell_is_empty(radius / 2.0, radius) {
             radius /= 2.0;
@@ -121,7 +127,7 @@ impl<'g> Search<'g> {
             return None;
         }
         let inner = [0.625, 0.75, 0.875].into_iter().find(|share| self.shell_is_empty(share * radius, radius));
-        radius *= inner.unwrap_or(1.0);
+        radius *= inner.unwrap_or(1.0) + 0.125;
         let mut domain = vec![symmetric(radius); self.places.len()];
         for axis in 0..domain.len() {
             self.trim(&mut domain, axis, radius / 8.0);

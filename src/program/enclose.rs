@@ -1,9 +1,6 @@
 //! Enclosures of graph values over boxes by the natural interval extension: constants of the scene, and the search for a
 //! default domain.
 
-use std::collections::HashMap;
-use std::collections::HashSet;
-
 use crate::graph;
 use crate::graph::Graph;
 use crate::graph::Op;
@@ -34,7 +31,10 @@ enum Step {
 impl<'g> Enclosures<'g> {
     pub fn new(graph: &'g Graph, roots: &[Value]) -> Self {
         let order = needed(graph, roots);
-        let place: HashMap<Value, usize> = order.iter().enumerate().map(|(i, &value)| (value, i)).collect();
+        let mut place = vec![0; order.last().map_or(0, |last| last.index() + 1)];
+        for (i, value) in order.iter().enumerate() {
+            place[value.index()] = i;
+        }
         let mut inputs = Vec::new();
         let step = |&value: &Value| {
             let node = graph.node(value);
@@ -47,14 +47,14 @@ impl<'g> Enclosures<'g> {
                 _ => {
                     let mut operands = [0; 3];
                     for (operand, needed) in operands.iter_mut().zip(node.operands()) {
-                        *operand = place[needed];
+                        *operand = place[needed.index()];
                     }
                     Step::Apply(value, operands)
                 }
             }
         };
         let steps: Vec<Step> = order.iter().map(step).collect();
-        let roots = roots.iter().map(|root| place[root]).collect();
+        let roots = roots.iter().map(|root| place[root.index()]).collect();
         Self { graph, steps, inputs, roots, results: Vec::new() }
     }
 
@@ -95,15 +95,18 @@ impl<'g> Enclosures<'g> {
     }
 }
 
-/// What `roots` need, operands before users; the cost is that of the part, not of the graph.
+/// What `roots` need, operands before users.
 pub(super) fn needed(graph: &Graph, roots: &[Value]) -> Vec<Value> {
-    let mut seen: HashSet<Value> = roots.iter().copied().collect();
-    let mut stack: Vec<Value> = seen.iter().copied().collect();
+    let mut seen = vec![false; roots.iter().map(|root| root.index() + 1).max().unwrap_or(0)];
+    let mut stack = roots.to_vec();
+    let mut order = Vec::new();
     while let Some(value) = stack.pop() {
-        stack.extend(graph.node(value).operands().iter().filter(|operand| seen.insert(**operand)));
+        if !std::mem::replace(&mut seen[value.index()], true) {
+            order.push(value);
+            stack.extend(graph.node(value).operands());
+        }
     }
     // Operands have smaller indices than their users.
-    let mut order: Vec<Value> = seen.into_iter().collect();
     order.sort_unstable();
     order
 }

@@ -89,6 +89,14 @@ pub(super) fn positional_after_named(function: &str, span: Span) -> Diagnostic {
         .at(span, "move it to the front or name it")
 }
 
+/// A shape that is used in a formula although only a part of it is drawn.
+pub(super) fn conditional_shape(name: &str, span: Span, definition: Span) -> Diagnostic {
+    Diagnostic::error(code::WRONG_KIND, format!("`{name}` has a `where` and cannot be used in a formula"))
+        .at(span, "used here")
+        .at(definition, "kept in part only")
+        .help("give its formula a name with `let` and use that in both places")
+}
+
 /// An equation (or `!=`) where an inside is needed.
 pub(super) fn equation_as_solid(span: Span) -> Diagnostic {
     Diagnostic::error(code::EQUATION_AS_SOLID, "an equation has no inside, so it cannot be a solid")
@@ -112,7 +120,8 @@ pub(super) fn exponent_too_large(exponent: &str, span: Span, help: &str) -> Diag
 
 /// `name(…)` with a number of arguments that fits neither a product nor a point.
 pub(super) fn not_a_function(name: &str, kind: &str, found: usize, span: Span) -> Diagnostic {
-    Diagnostic::error(code::NOT_A_FUNCTION, format!("`{name}` is {kind}, not a function of {found} arguments"))
+    let plural = if found == 1 { "" } else { "s" };
+    Diagnostic::error(code::NOT_A_FUNCTION, format!("`{name}` is {kind}, not a function of {found} argument{plural}"))
         .at(span, "called here")
 }
 
@@ -159,7 +168,7 @@ pub(super) fn empty_range(lo: f64, hi: f64, span: Span) -> Diagnostic {
 }
 
 pub(super) fn unknown_setting_value(title: String, span: Span) -> Diagnostic {
-    Diagnostic::error(code::BAD_SETTING, title).at(span, "not understood")
+    Diagnostic::error(code::BAD_SETTING, title).at(span, "this value")
 }
 
 pub(super) fn out_of_range(what: &str, found: f64, range: &str, span: Span) -> Diagnostic {
@@ -170,6 +179,12 @@ pub(super) fn set_twice(what: &str, span: Span, first: Span) -> Diagnostic {
     Diagnostic::error(code::SET_TWICE, format!("{what} is set twice"))
         .at(span, "set again here")
         .at(first, "first set here")
+}
+
+pub(super) fn light_and_none(span: Span, first: Span) -> Diagnostic {
+    Diagnostic::error(code::SET_TWICE, "light(\"none\") and another light contradict each other")
+        .at(span, "this one")
+        .at(first, "and this one")
 }
 
 pub(super) fn dimension(title: &str, span: Span, label: &str, help: &str) -> Diagnostic {

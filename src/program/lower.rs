@@ -32,13 +32,17 @@ use super::values::ItemId;
 use super::values::Meaning;
 use super::values::Truth;
 
-/// Expressions open at once, calls included. The parser caps what can be written; inlined calls add to it. Measured at
-/// most 2 KiB of stack a level with optimisation level 1, so that half of the 2 MiB of a test thread suffices.
-const MAX_DEPTH: usize = 500;
+/// Levels of expressions open at once, inlined calls included; the parser alone allows 256 brackets with a few levels
+/// each. Measured at optimisation level 1, a level takes 690 bytes of stack and a call 1630 more, so that this is at most
+/// 1.4 MB of the 2 MiB that the smallest of Rust's threads have.
+const MAX_DEPTH: usize = 2000;
+
+/// Levels that a call or product `name(...)` counts.
+const CALL_LEVELS: usize = 3;
 
 /// Steps of lowering spent inside functions: expressions inlined and nodes copied. What is written in the file itself
 /// is linear in its length and not counted.
-const MAX_EXPANSION: usize = 4_000_000;
+const MAX_EXPANSION: usize = 1_000_000;
 
 /// The state of lowering one program into one graph.
 pub(super) struct Lowerer<'p> {
@@ -112,7 +116,7 @@ impl<'p> Lowerer<'p> {
 
     /// Adds a message, once per place. In a function of the library the user's call becomes the main place.
     pub fn report(&mut self, mut diagnostic: Diagnostic) {
-        let library = |frame: &Frame| self.program.files[frame.file].library;
+        let library = |frame: &Frame| self.program.files[frame.file].origin.library;
         let last = self.frames.len() - 1;
         if library(&self.frames[last]) {
             let entered = (1..=last).rev().find(|&i| !library(&self.frames[i - 1]));
@@ -155,7 +159,9 @@ impl<'p> Lowerer<'p> {
         // Once, wherever it happens first; everything after it is given up too.
         if !self.exhausted {
             self.exhausted = true;
-            self.report(errors::too_much_expansion(span));
+            // The call that was written, not the one among millions at which patience ended.
+            let call = self.frames.iter().find_map(|frame| frame.call.as_ref());
+            self.diagnostics.push(errors::too_much_expansion(call.map_or(span, |(_, span)| *span)));
         }
         false
     }
@@ -224,8 +230,11 @@ impl<'p> Lowerer<'p> {
     }
 
     /// The meaning of an expression; errors are reported and give [`Meaning::Invalid`].
-    pub fn lower(&mut self, expr: &Expr) -> Meaning {
-        if self.depth == MAX_DEPTH {
+    pub fn lower(&mut self, mut expr: &Expr) -> Meaning {
+        while let ExprKind::Group(inner) = &expr.kind {
+            expr = inner;
+        }
+        if self.depth >= MAX_DEPTH {
             self.report(errors::too_deep(expr.span));
             return Meaning::Invalid;
         }
@@ -244,7 +253,12 @@ impl<'p> Lowerer<'p> {
             ExprKind::Name(name) => self.name(name),
             ExprKind::Text(text) => Meaning::Text(Rc::from(text.as_str())),
             ExprKind::List(items) => self.list(items),
-            ExprKind::Apply { callee, args } => self.apply(callee, args, expr.span),
+            ExprKind::Apply { callee, args } => {
+                self.depth += CALL_LEVELS;
+                let meaning = self.apply(callee, args, expr.span);
+                self.depth -= CALL_LEVELS;
+                meaning
+            }
             ExprKind::Bars(inner) => self.bars(inner),
             ExprKind::Group(inner) => self.lower(inner),
             ExprKind::Neg(inner) => {
@@ -416,7 +430,8 @@ impl<'p> Lowerer<'p> {
             }
             (expected, _) => {
                 let needs = format!("both arms of `if` must be of one kind: after {} here", expected.kind());
-                self.report_kind(&needs, &no, otherwise.span);
+                let diagnostic = errors::wrong_kind(&needs, no.kind(), otherwise.span);
+                self.report(diagnostic.help("`else` reaches to the end; to go on after it put the `if` in brackets"));
                 Meaning::Invalid
             }
         }

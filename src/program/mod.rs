@@ -2,9 +2,9 @@
 //!
 //! [`resolve`] and [`resolve_expression`] are the ways in. In the order of the work:
 //!
-//! - [`import`], [`stdlib`], `names`: all files, what each name means, and an order of evaluation;
+//! - `import`, `stdlib`, `names`, `scan`: all files, what each name means, and an order of evaluation;
 //! - `values`, `lower`, `algebra`, `call`, `exponent`: expressions to graph values, with every function inlined;
-//! - [`settings`], `domain`, `enclose`: the scene around the formulas;
+//! - `settings`, `domain`, `enclose`: the scene around the formulas;
 //! - `errors`: every message, in one place.
 
 mod algebra;
@@ -18,6 +18,7 @@ mod import;
 mod lower;
 mod names;
 mod resolve;
+mod scan;
 pub mod scene;
 mod settings;
 mod stdlib;

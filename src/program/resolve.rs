@@ -15,6 +15,7 @@ use crate::syntax::ast::Expr;
 use crate::syntax::ast::Module;
 use crate::syntax::ast::Name;
 use crate::syntax::ast::ShapeKeyword;
+use crate::syntax::ast::Statement;
 use crate::syntax::ast::StatementKind;
 
 use super::builtins::TIME;
@@ -25,6 +26,7 @@ use super::import::Importer;
 use super::lower::Lowerer;
 use super::lower::as_truth;
 use super::names::Program;
+use super::names::defined_name;
 use super::scene::COORDINATES;
 use super::scene::Parameter;
 use super::scene::Scene;
@@ -46,16 +48,18 @@ pub struct Context<'a> {
     pub overrides: &'a [(String, Interval)],
 }
 
-/// Resolves a parsed file. The scene is absent if there is any error; what the parser had to say is not repeated.
+/// Resolves what [`crate::syntax::parse`] gave for a file. The scene is absent if there is any error, of the parser or of
+/// this layer; the messages are those of both in the order of the text. What only follows from a statement that the
+/// parser left out is not reported.
 pub fn resolve(
     sources: &mut SourceMap,
     file: FileId,
-    module: Module,
+    (module, mut diagnostics): (Module, Vec<Diagnostic>),
     context: &Context,
 ) -> (Option<Scene>, Vec<Diagnostic>) {
     let empty = module.statements.is_empty();
-    let mut diagnostics = Vec::new();
-    let program = Program::load(sources, (file, module), HashSet::new(), context.importer, &mut diagnostics);
+    let faulty = !diagnostics.is_empty();
+    let program = Program::load(sources, (file, module), faulty, HashSet::new(), context.importer, &mut diagnostics);
     let mut lowerer = Lowerer::new(&program, context.differentiate);
     lowerer.evaluate_items();
     let mut shapes = lower_shapes(&mut lowerer);
@@ -103,7 +107,8 @@ pub struct Expression {
 }
 
 /// Resolves an expression whose free names are `variables` and the definitions (`let`, `fn`, `param`, `import`) of a
-/// module; shapes and settings in it are not looked at. Variables hide everything else of their name.
+/// module; shapes and settings in it are not looked at. Variables hide everything else of their name, and a later
+/// definition replaces an earlier one.
 ///
 /// # Errors
 /// All messages about the expression and about the definitions.
@@ -118,17 +123,24 @@ pub fn resolve_expression(
     let variables: HashSet<String> = variables.iter().map(|&name| name.to_owned()).collect();
     // The expression is scanned like everything else if it is a definition; its name cannot be written.
     let mut module = definitions;
-    module
-        .statements
-        .retain(|statement| !matches!(statement.kind, StatementKind::Domain { .. } | StatementKind::Shape { .. }));
+    let mut later = HashSet::new();
+    module.statements.reverse();
+    module.statements.retain(|statement| match (&statement.kind, defined_name(statement)) {
+        (StatementKind::Domain { .. } | StatementKind::Shape { .. }, _) => false,
+        (_, Some(name)) => later.insert(name.text.clone()),
+        (_, None) => true,
+    });
+    module.statements.reverse();
     let name = Name { text: String::new(), span: expression.span };
     let kind = StatementKind::Let { name, value: expression.clone() };
-    module.statements.push(crate::syntax::ast::Statement { span: expression.span, doc: Vec::new(), kind });
+    module.statements.push(Statement { span: expression.span, doc: Vec::new(), kind });
     let main = (expression.span.file, module);
-    let program = Program::load(sources, main, variables.clone(), context.importer, &mut diagnostics);
+    let program = Program::load(sources, main, false, variables.clone(), context.importer, &mut diagnostics);
     let mut lowerer = Lowerer::new(&program, context.differentiate);
     lowerer.evaluate_items();
-    let parameters = parameters(&mut lowerer, context.overrides);
+    let mut parameters = parameters(&mut lowerer, context.overrides);
+    // Time passes in scenes alone; here `t` is a variable like any other.
+    parameters.retain(|parameter| parameter.name != TIME);
     let meaning = lowerer.name("");
     let value = match as_truth(&meaning) {
         Some(truth) => Some(truth.value),
@@ -165,7 +177,7 @@ pub fn resolve_constant(
     context: &Context,
 ) -> Result<Interval, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
-    let statement = crate::syntax::ast::Statement {
+    let statement = Statement {
         span: expression.span,
         doc: Vec::new(),
         kind: StatementKind::Let {
@@ -174,7 +186,7 @@ pub fn resolve_constant(
         },
     };
     let main = (expression.span.file, Module { statements: vec![statement] });
-    let program = Program::load(sources, main, HashSet::new(), context.importer, &mut diagnostics);
+    let program = Program::load(sources, main, false, HashSet::new(), context.importer, &mut diagnostics);
     let mut lowerer = Lowerer::new(&program, context.differentiate);
     lowerer.evaluate_items();
     let value = lowerer.constant_interval(expression, "this value");
@@ -196,14 +208,16 @@ struct Lowered {
 fn lower_shapes(lowerer: &mut Lowerer) -> Vec<Lowered> {
     let program = lowerer.program;
     let mut shapes = Vec::new();
-    for statement in &program.files[0].module.statements {
+    for (index, statement) in program.files[0].module.statements.iter().enumerate() {
         let StatementKind::Shape { keyword, name, relation, condition } = &statement.kind else { continue };
         if settings::as_setting(statement).is_some() {
             continue;
         }
-        // A named shape has been evaluated as a definition; evaluating it again finds the same nodes and, as messages
-        // are given once per place, the same errors.
-        let meaning = lowerer.lower(relation);
+        // A named shape has been evaluated as a definition.
+        let meaning = match program.item_of(0, index) {
+            Some(item) => lowerer.item(item),
+            None => lowerer.lower(relation),
+        };
         let field = shape_field(lowerer, &meaning, relation, keyword.is_none() && name.is_none());
         let truth = condition.as_ref().map(|condition| {
             let meaning = lowerer.lower(condition);
@@ -357,11 +371,8 @@ fn check_dimension(lowerer: &mut Lowerer, shapes: &mut [Lowered], written: Optio
     let mut taken: HashSet<String> = shapes.iter().map(|lowered| lowered.shape.name.clone()).collect();
     for (index, lowered) in shapes.iter_mut().enumerate().filter(|(_, lowered)| lowered.shape.name.is_empty()) {
         let word = if dimension == 3 { "surface" } else { "curve" };
-        let mut name = format!("{word}{}", index + 1);
-        while !taken.insert(name.clone()) {
-            name.push('\'');
-        }
-        lowered.shape.name = name;
+        let mut names = (index + 1..).map(|number| format!("{word}{number}"));
+        lowered.shape.name = names.find(|name| taken.insert(name.clone())).unwrap_or_default();
     }
     dimension
 }

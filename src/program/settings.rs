@@ -178,15 +178,17 @@ impl Settings {
             match self.view.lights {
                 None => self.view.lights = Some(Vec::new()),
                 Some(_) => {
-                    lowerer.report(errors::set_twice("light(\"none\") beside another light", callee.span, callee.span))
+                    let first = self.set.get("a light").copied().unwrap_or(callee.span);
+                    lowerer.report(errors::light_and_none(callee.span, first));
                 }
             }
             self.set.insert("no light".to_owned(), callee.span);
             return;
         }
         if let Some(&first) = self.set.get("no light") {
-            return lowerer.report(errors::set_twice("a light beside light(\"none\")", callee.span, first));
+            return lowerer.report(errors::light_and_none(callee.span, first));
         }
+        self.set.insert("a light".to_owned(), callee.span);
         let given = arguments(lowerer, setting, callee, args);
         let get = |name: &str| given.iter().find(|(argument, _)| *argument == name).map(|(_, expr)| *expr);
         let color = match get("color") {
@@ -303,7 +305,8 @@ impl Lowerer<'_> {
         let values = match self.lower(expr) {
             Meaning::Vector(values) if values.len() == 3 => values,
             Meaning::Vector(values) => {
-                self.report(errors::lengths_differ(values.len(), 3, expr.span));
+                let found = format!("a list of {}", values.len());
+                self.report(errors::wrong_kind(&format!("{needs} is a list of three numbers"), &found, expr.span));
                 return None;
             }
             other => {

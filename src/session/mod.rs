@@ -106,14 +106,14 @@ impl Artefact {
 
         // Text to tree.
         let text = self.sources.get(file).text.clone();
-        let (module, found) = syntax::parse(file, &text);
-        self.module = Some(module.clone());
-        self.report(found)?;
+        let parsed = syntax::parse(file, &text);
+        self.module = Some(parsed.0.clone());
 
-        // Tree to formulas in one graph, with the scene around them.
+        // Tree to formulas in one graph, with the scene around them. Statements that could not be read do not keep the
+        // others from being checked.
         let context = |overrides| Context { importer, differentiate: &derive::derivative, overrides };
         let overrides = self.values(overrides, &context(&[]))?;
-        let (resolved, found) = program::resolve(&mut self.sources, file, module, &context(&overrides));
+        let (resolved, found) = program::resolve(&mut self.sources, file, parsed, &context(&overrides));
         self.resolved = resolved;
         self.report(found)?;
 
