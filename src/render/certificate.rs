@@ -14,6 +14,7 @@ use serde::Deserialize;
 use serde::Serialize;
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::program::scene::Parameter;
 use crate::program::scene::Scene;
 use crate::render::march::Refuted;
@@ -102,7 +103,7 @@ impl Certificate {
     }
 
     /// The bytes of a certificate file.
-    pub fn encode(&self) -> Vec<u8> {
+    pub fn to_bytes(&self) -> Vec<u8> {
         let plain = postcard::to_stdvec(self).expect("numbers and lists have an encoding");
         let mut encoder = ZlibEncoder::new(MAGIC.to_vec(), Compression::fast());
         encoder.write_all(&plain).expect("memory takes all bytes");
@@ -112,9 +113,9 @@ impl Certificate {
     /// Reads a certificate file.
     ///
     /// # Errors
-    /// If the bytes are not a whole certificate (`E0620`).
-    pub fn decode(bytes: &[u8]) -> Result<Self, Diagnostic> {
-        let damaged = || Diagnostic::error("E0620", "this file is no certificate, or is damaged");
+    /// If the bytes are not a whole certificate (`E0507`).
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Diagnostic> {
+        let damaged = || Diagnostic::error(code::NOT_A_CERTIFICATE, "this file is no certificate, or is damaged");
         let packed = bytes.strip_prefix(MAGIC).ok_or_else(damaged)?;
         let mut plain = Vec::new();
         let mut decoder = ZlibDecoder::new(packed).take(MAX_BYTES);

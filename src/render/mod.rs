@@ -31,6 +31,7 @@ use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering;
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::kernel::Backend;
 use crate::program::scene::Parameter;
 use crate::program::scene::Scene;
@@ -83,7 +84,7 @@ impl<'a> Control<'a> {
     }
 
     fn cancelled() -> Diagnostic {
-        Diagnostic::error("E0605", "stopped before the picture was complete")
+        Diagnostic::error(code::STOPPED, "stopped before the picture was complete")
     }
 }
 
@@ -102,13 +103,13 @@ impl Renderer {
     /// Compiles what the plan needs.
     ///
     /// # Errors
-    /// If the scene cannot be drawn (`E06..`), or the backend fails.
+    /// If the scene cannot be drawn (`E05..`), or the backend fails.
     pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
         let threads = match options.threads {
             None => None,
             Some(count) => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
-                let failed = |error| Diagnostic::error("E0606", format!("cannot start {count} threads: {error}"));
+                let failed = |error| Diagnostic::error(code::NO_THREADS, format!("cannot start {count} threads: {error}"));
                 Some(pool.map_err(failed)?)
             }
         };
@@ -130,7 +131,7 @@ impl Renderer {
     /// Renders with the given values of the scene's parameters, in the scene's order.
     ///
     /// # Errors
-    /// If the work is cancelled (`E0605`).
+    /// If the work is cancelled (`E0504`).
     pub fn render(&self, parameters: &[Parameter], control: &Control<'_>) -> Result<Picture, Diagnostic> {
         let work = || match &self.engine {
             Engine::Space(space) => space.render(parameters, control),

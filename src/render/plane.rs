@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::interval::Interval;
 use crate::kernel::Backend;
 use crate::kernel::verdict;
@@ -23,7 +23,6 @@ use crate::render::batch::Batch;
 use crate::render::batch::Program;
 use crate::render::ink;
 use crate::render::march::GROUPS;
-use crate::render::march::opposite;
 use crate::render::march::proves_condition;
 use crate::render::march::refutes_condition;
 use crate::render::march::sign;
@@ -121,7 +120,7 @@ pub struct Plane {
 impl Plane {
     pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
         if options.certificate {
-            return Err(Diagnostic::error("E0607", "plane scenes have no certificate")
+            return Err(Diagnostic::error(code::NO_CERTIFICATE, "plane scenes have no certificate")
                 .help("render without `--certificate`, or use `imp arrange`, whose results can be verified"));
         }
         check(scene, options)?;

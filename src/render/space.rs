@@ -8,6 +8,7 @@ use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::kernel::Backend;
 use crate::program::scene::Parameter;
 use crate::program::scene::Projection;
@@ -64,8 +65,8 @@ pub struct Geometry {
 
 impl Geometry {
     /// # Errors
-    /// If the domain is unbounded (`E0603`), the camera is impossible (`E0601`, `E0602`) or the picture has no pixels or
-    /// too many (`E0604`).
+    /// If the domain is unbounded (`E0502`), the camera is impossible (`E0501`) or the picture has no pixels or
+    /// too many (`E0503`).
     pub fn new(scene: &Scene, options: &Options) -> Result<Self, Diagnostic> {
         check(scene, options)?;
         let (width, height) = (options.width, options.height);
@@ -142,15 +143,15 @@ pub fn shared_inputs(geometry: &Geometry) -> [(&'static str, f64); 3] {
 /// Refuses what cannot be drawn, in space or plane.
 ///
 /// # Errors
-/// If the domain is unbounded (`E0603`), or the picture has no pixels or too many (`E0604`).
+/// If the domain is unbounded (`E0502`), or the picture has no pixels or too many (`E0503`).
 pub fn check(scene: &Scene, options: &Options) -> Result<(), Diagnostic> {
     if scene.domain.iter().any(|range| !range.is_bounded() || range.is_singleton()) {
-        return Err(Diagnostic::error("E0603", "the domain has no extent or no bounds")
+        return Err(Diagnostic::error(code::NO_EXTENT, "the domain has no extent or no bounds")
             .help("give every coordinate a range such as `[-2, 2]`"));
     }
     let (width, height) = (options.width, options.height);
     if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
-        return Err(Diagnostic::error("E0604", format!("a picture of {width}x{height} pixels cannot be drawn"))
+        return Err(Diagnostic::error(code::PICTURE_SIZE, format!("a picture of {width}x{height} pixels cannot be drawn"))
             .help(format!("write a size such as `512x512`; neither side may exceed {MAX_SIDE} pixels")));
     }
     Ok(())
@@ -266,7 +267,7 @@ pub struct Space {
 impl Space {
     pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
         if options.certificate && options.rounding == Rounding::Nearest {
-            return Err(Diagnostic::error("E0608", "unrounded arithmetic proves nothing, so there is no certificate of it")
+            return Err(Diagnostic::error(code::NO_CERTIFICATE, "unrounded arithmetic proves nothing, so there is no certificate of it")
                 .help("leave out `--rounding nearest` or `--certificate`"));
         }
         let start = Instant::now();

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::derive::Arithmetic;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::kernel::Backend;
 use crate::kernel::verdict;
 use crate::program::scene::Scene;
@@ -53,7 +54,7 @@ pub struct Report {
 /// Checks that a certificate proves what it claims of the picture of a scene.
 ///
 /// # Errors
-/// If it belongs to another scene (`E0621`), or proves less than it claims or anything else (`E0622`, with the tile and
+/// If it belongs to another scene (`E0508`), or proves less than it claims or anything else (`E0509`, with the tile and
 /// pixel); if the scene cannot be drawn or the backend fails.
 pub fn verify(
     scene: &Scene,
@@ -62,7 +63,7 @@ pub fn verify(
     control: &Control<'_>,
 ) -> Result<Report, Diagnostic> {
     if certificate.fingerprint != fingerprint(scene, &scene.parameters) || scene.dimension() != 3 {
-        return Err(Diagnostic::error("E0621", "the certificate belongs to another scene")
+        return Err(Diagnostic::error(code::OTHER_SCENE, "the certificate belongs to another scene")
             .help("verify it with the file and the parameters that it was made with"));
     }
     let Certificate { width, height, enclosures, .. } = *certificate;
@@ -114,7 +115,7 @@ pub fn verify(
 }
 
 fn rejected(reason: String) -> Diagnostic {
-    Diagnostic::error("E0622", format!("the certificate is rejected: {reason}"))
+    Diagnostic::error(code::REJECTED, format!("the certificate is rejected: {reason}"))
 }
 
 /// What is verified of a ray and a shape: the prefix that is refuted, and the end of the proved bracket after it.
