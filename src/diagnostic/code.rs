@@ -1,5 +1,5 @@
 //! The stable codes of all messages: E01xx the text, E02xx names and kinds, E03xx the scene, E04xx files and
-//! arguments, E09xx faults of Imp itself. A code never changes its meaning.
+//! arguments, E05xx pictures and certificates, E09xx faults of Imp itself. A code never changes its meaning.
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $code:literal;)+) => {
@@ -120,6 +120,25 @@ codes! {
     NOT_FORMATTED = "E0406";
     /// Formulas so large that compiling them takes a while.
     LARGE_FORMULA = "E0407";
+
+    /// A camera that sees nothing.
+    BAD_CAMERA = "E0501";
+    /// A domain that has no extent or no bounds.
+    NO_EXTENT = "E0502";
+    /// A picture of no pixels, or of too many.
+    PICTURE_SIZE = "E0503";
+    /// Work that was stopped before it was complete.
+    STOPPED = "E0504";
+    /// Worker threads that cannot be started.
+    NO_THREADS = "E0505";
+    /// A picture that can have no certificate.
+    NO_CERTIFICATE = "E0506";
+    /// A file that is no certificate, or a damaged one.
+    NOT_A_CERTIFICATE = "E0507";
+    /// A certificate of another scene.
+    OTHER_SCENE = "E0508";
+    /// A certificate that does not prove what it claims.
+    REJECTED = "E0509";
 
     /// A fault of Imp, not of its user.
     INTERNAL = "E0901";

@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::interval::Interval;
 use crate::program::scene::CameraSettings;
 use crate::program::scene::Projection;
@@ -51,7 +52,7 @@ impl Camera {
         let high = DVec3::new(domain[0].hi(), domain[1].hi(), domain[2].hi());
         let fov = settings.fov.unwrap_or(FIELD_OF_VIEW);
         if !(fov > 0.0 && fov <= 150.0) {
-            return Err(Diagnostic::error("E0601", format!("a field of view of {fov} degrees cannot be drawn"))
+            return Err(Diagnostic::error(code::BAD_CAMERA, format!("a field of view of {fov} degrees cannot be drawn"))
                 .help("write an angle between 0 and 150 degrees, for example `fov = 30`"));
         }
         let projection = settings.projection.unwrap_or(Projection::Perspective);
@@ -62,7 +63,7 @@ impl Camera {
             DVec3::new(elevation.cos() * azimuth.sin(), -elevation.cos() * azimuth.cos(), elevation.sin());
         let away = settings.position.map_or(three_quarter, |position| DVec3::from(position) - target);
         let Some(forward) = (-away).try_normalize() else {
-            return Err(Diagnostic::error("E0602", "the camera's position and its target are the same point")
+            return Err(Diagnostic::error(code::BAD_CAMERA, "the camera's position and its target are the same point")
                 .help("move one of them"));
         };
         let wanted = settings.up.map_or(DVec3::Z, DVec3::from);

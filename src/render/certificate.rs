@@ -1,15 +1,145 @@
-//! Placeholder.
+//! Certificates: what a picture refuted and proved, beam by beam and pixel by pixel, in a form that `verify` replays.
+//!
+//! A file is the magic bytes, then a zlib stream of the [`Certificate`] in postcard's encoding. Nothing in it is
+//! believed: the fingerprint guards against mixing up files, everything else is checked against the scene.
+
+use std::fmt::Write as _;
+use std::io::Read;
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::read::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+use serde::Deserialize;
+use serde::Serialize;
+
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
+use crate::program::scene::Parameter;
+use crate::program::scene::Scene;
 use crate::render::march::Refuted;
+use crate::render::options::Enclosures;
 use crate::render::options::Options;
 use crate::render::outcome::Outcome;
+use crate::render::outcome::Surface;
 use crate::render::stats::Stats;
 
-#[derive(Debug, Clone)]
+const MAGIC: &[u8; 8] = b"imp-ray1";
+
+/// The largest unpacked certificate that is read: a damaged file must not exhaust memory.
+const MAX_BYTES: u64 = 1 << 32;
+
+/// The proof of one picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
-    covers: Vec<Vec<(Vec<Refuted>, Vec<Outcome>)>>,
+    /// Of the scene and its parameters.
+    pub(super) fingerprint: u64,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) enclosures: Enclosures,
+    pub(super) counts: Counts,
+    /// By tile, then by shape.
+    pub(super) tiles: Vec<Vec<ShapeProof>>,
 }
+
+/// How many pixels are what.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    pub proved: u64,
+    pub misses: u64,
+    pub unknown: u64,
+}
+
+/// What a tile proves of a shape.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct ShapeProof {
+    pub cover: Vec<Refuted>,
+    /// Pixels that do not miss: how many pixels lie between it and the one before, row by row, and what it is.
+    pub claims: Vec<(u32, Claim)>,
+}
+
+/// What is claimed of a pixel's ray.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) enum Claim {
+    /// A proved hit inside the bracket, with everything before it refuted.
+    Hit(Surface, [f64; 2]),
+    /// Everything before this is refuted.
+    Unknown(f64),
+}
+
 impl Certificate {
-    pub fn new(_options: &Options, _stats: &Stats, covers: Vec<Vec<(Vec<Refuted>, Vec<Outcome>)>>) -> Self {
-        Self { covers }
+    /// Collects what the tiles recorded: for each tile and shape the cover and the outcomes of its pixels.
+    pub(super) fn new(
+        (scene, parameters): (&Scene, &[Parameter]),
+        options: &Options,
+        stats: &Stats,
+        tiles: Vec<Vec<(Vec<Refuted>, Vec<Outcome>)>>,
+    ) -> Self {
+        let proof = |(cover, outcomes): (Vec<Refuted>, Vec<Outcome>)| {
+            let mut claims = Vec::new();
+            let mut gap = 0;
+            for outcome in outcomes {
+                let claim = match (outcome.unknown, outcome.drawn) {
+                    (true, _) => Claim::Unknown(outcome.clear),
+                    (false, true) => Claim::Hit(outcome.surface, outcome.bracket),
+                    (false, false) => {
+                        gap += 1;
+                        continue;
+                    }
+                };
+                claims.push((gap, claim));
+                gap = 0;
+            }
+            ShapeProof { cover, claims }
+        };
+        Self {
+            fingerprint: fingerprint(scene, parameters),
+            width: options.width,
+            height: options.height,
+            enclosures: options.enclosures,
+            counts: Counts { proved: stats.proved, misses: stats.misses, unknown: stats.unknown },
+            tiles: tiles.into_iter().map(|shapes| shapes.into_iter().map(proof).collect()).collect(),
+        }
     }
+
+    /// The bytes of a certificate file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let plain = postcard::to_stdvec(self).expect("numbers and lists have an encoding");
+        let mut encoder = ZlibEncoder::new(MAGIC.to_vec(), Compression::fast());
+        encoder.write_all(&plain).expect("memory takes all bytes");
+        encoder.finish().expect("memory takes all bytes")
+    }
+
+    /// Reads a certificate file.
+    ///
+    /// # Errors
+    /// If the bytes are not a whole certificate (`E0507`).
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Diagnostic> {
+        let damaged = || Diagnostic::error(code::NOT_A_CERTIFICATE, "this file is no certificate, or is damaged");
+        let packed = bytes.strip_prefix(MAGIC).ok_or_else(damaged)?;
+        let mut plain = Vec::new();
+        let mut decoder = ZlibDecoder::new(packed).take(MAX_BYTES);
+        decoder.read_to_end(&mut plain).map_err(|_| damaged())?;
+        match postcard::take_from_bytes(&plain) {
+            Ok((certificate, [])) => Ok(certificate),
+            Ok(_) | Err(_) => Err(damaged()),
+        }
+    }
+}
+
+/// A number that tells scenes apart (FNV-1a over a description).
+pub(super) fn fingerprint(scene: &Scene, parameters: &[Parameter]) -> u64 {
+    let mut text = scene.graph.to_string();
+    let bits = |range: crate::interval::Interval| [range.lo().to_bits(), range.hi().to_bits()];
+    for shape in &scene.shapes {
+        write!(text, "{:?} {} {:?}", shape.kind, shape.field, shape.condition).expect("a string takes all text");
+    }
+    for parameter in parameters {
+        write!(text, "{} {:?}", parameter.name, bits(parameter.value)).expect("a string takes all text");
+    }
+    for range in &scene.domain {
+        write!(text, "{:?}", bits(*range)).expect("a string takes all text");
+    }
+    write!(text, "{:?}", scene.view.camera).expect("a string takes all text");
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }

@@ -1,16 +1,11 @@
-//! Pictures to PNG files. A file appears under its name only when it is complete.
-
-use std::io;
-use std::io::BufWriter;
-use std::io::Write;
-use std::path::Path;
+//! Pictures to PNG.
 
 use image::ExtendedColorType;
 use image::ImageEncoder;
 use image::codecs::png::PngEncoder;
 
-use crate::diagnostic::Diagnostic;
 use crate::render::picture::Certainty;
+use crate::render::picture::Depth;
 use crate::render::picture::Picture;
 
 /// What can be written of a picture.
@@ -54,8 +49,7 @@ fn encode(picture: &Picture, layer: Layer) -> (Vec<u8>, ExtendedColorType) {
             let scale = if far > near { 1.0 / (far - near) } else { 0.0 };
             // The lowest tenth of the scale is left to nothing at all.
             let code = |distance: f64| (65535.0 * (1.0 - 0.9 * (distance - near) * scale)).round() as u16;
-            let pixel =
-                |depth: &Option<_>| depth.as_ref().map_or(0, |d: &crate::render::picture::Depth| code(d.distance));
+            let pixel = |depth: &Option<Depth>| depth.map_or(0, |depth| code(depth.distance));
             // The encoder takes 16-bit samples in the machine's byte order.
             let bytes = picture.depth.iter().flat_map(|depth| pixel(depth).to_ne_bytes()).collect();
             (bytes, ExtendedColorType::L16)
@@ -63,51 +57,19 @@ fn encode(picture: &Picture, layer: Layer) -> (Vec<u8>, ExtendedColorType) {
     }
 }
 
-/// Writes a layer as PNG. The layer must have been asked for in the options.
+/// A layer as the bytes of a PNG file. The layer must have been asked for in the options; else the result is a picture
+/// of one black pixel.
 ///
-/// # Errors
-/// If the file cannot be written (`E0610`); what was there before stays untouched then.
-pub fn write_png(picture: &Picture, layer: Layer, path: &Path) -> Result<(), Diagnostic> {
+/// # Panics
+/// If the picture's planes do not have its size: our mistake.
+pub fn png(picture: &Picture, layer: Layer) -> Vec<u8> {
     let (bytes, color) = encode(picture, layer);
-    write_file(path, |file| {
-        let encoder = PngEncoder::new(file);
-        encoder.write_image(&bytes, picture.width, picture.height, color).map_err(io::Error::other)
-    })
-}
-
-/// Writes a file beside its final place, then renames it, so that no half file is ever seen.
-///
-/// # Errors
-/// If the file cannot be written (`E0610`).
-pub fn write_file(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<&std::fs::File>) -> io::Result<()>,
-) -> Result<(), Diagnostic> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
+    let mut file = Vec::new();
+    let encoder = PngEncoder::new(&mut file);
+    let written = match bytes.is_empty() {
+        true => encoder.write_image(&[0; 3], 1, 1, ExtendedColorType::Rgb8),
+        false => encoder.write_image(&bytes, picture.width, picture.height, color),
     };
-    let attempt = || -> io::Result<()> {
-        let file = tempfile::Builder::new().permissions(permissions()).tempfile_in(folder)?;
-        let mut buffer = BufWriter::new(file.as_file());
-        write(&mut buffer)?;
-        buffer.flush()?;
-        drop(buffer);
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    attempt().map_err(|error| Diagnostic::error("E0610", format!("cannot write {}: {error}", path.display())))
-}
-
-/// What a new file may be used for: as other programs make them, not as private temporary files are.
-#[cfg(unix)]
-fn permissions() -> std::fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    // The process's mask still applies.
-    std::fs::Permissions::from_mode(0o666)
-}
-
-#[cfg(not(unix))]
-fn permissions() -> std::fs::Permissions {
-    std::fs::metadata(".").map(|folder| folder.permissions()).expect("the working folder can be read")
+    written.expect("memory takes all bytes, and a layer has as many as its picture has pixels");
+    file
 }

@@ -6,6 +6,9 @@
 //! block split, and all parts resume at the same place, since everything before is refuted for all of their rays.
 //! Items never look at each other, so the packing of lanes cannot show in the result.
 
+use serde::Deserialize;
+use serde::Serialize;
+
 use crate::interval::Interval;
 use crate::kernel::Real;
 use crate::kernel::verdict;
@@ -88,7 +91,7 @@ pub fn place(pixel: Pixel) -> (u32, u32) {
 }
 
 /// How a cell was refuted, in the words of a certificate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Test {
     /// The enclosure excludes 0, is empty, or the condition is false.
     Natural,
@@ -99,7 +102,7 @@ pub enum Test {
 }
 
 /// Which part of a cell was refuted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Part {
     /// All of it.
     Whole,
@@ -112,7 +115,7 @@ pub enum Part {
 }
 
 /// One refuted cell of a block.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Refuted {
     pub x: u8,
     pub y: u8,

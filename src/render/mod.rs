@@ -7,31 +7,36 @@
 
 mod batch;
 mod camera;
-pub mod certificate;
+mod certificate;
 mod finish;
 mod grid;
 pub mod image;
+mod ink;
 mod march;
 mod options;
 mod outcome;
 mod picture;
 mod plan;
+mod plane;
 mod programs;
 mod shade;
 mod solve;
 mod space;
 mod stats;
 mod tile;
+mod verify;
 
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering;
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::kernel::Backend;
 use crate::program::scene::Parameter;
 use crate::program::scene::Scene;
 
+pub use certificate::Certificate;
 pub use options::Enclosures;
 pub use options::Layers;
 pub use options::Options;
@@ -44,6 +49,8 @@ pub use plan::Plan;
 pub use plan::Planned;
 pub use stats::Evaluations;
 pub use stats::Stats;
+pub use verify::Report;
+pub use verify::verify;
 
 /// How a caller watches and stops work under way.
 #[derive(Default)]
@@ -71,45 +78,65 @@ impl<'a> Control<'a> {
         }
     }
 
+    /// Before the work starts over.
+    fn reset(&self) {
+        self.done.store(0, Ordering::Relaxed);
+    }
+
     fn cancelled() -> Diagnostic {
-        Diagnostic::error("E0605", "stopped before the picture was complete")
+        Diagnostic::error(code::STOPPED, "stopped before the picture was complete")
     }
 }
 
 /// A scene with its kernels, ready to be rendered for any values of its parameters: an animation compiles once.
 pub struct Renderer {
-    space: space::Space,
+    engine: Engine,
     threads: Option<rayon::ThreadPool>,
+}
+
+enum Engine {
+    Space(space::Space),
+    Plane(plane::Plane),
 }
 
 impl Renderer {
     /// Compiles what the plan needs.
     ///
     /// # Errors
-    /// If the scene cannot be drawn (`E06..`), or the backend fails.
+    /// If the scene cannot be drawn (`E05..`), or the backend fails.
     pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
         let threads = match options.threads {
             None => None,
             Some(count) => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
-                let failed = |error| Diagnostic::error("E0606", format!("cannot start {count} threads: {error}"));
+                let failed = |error| Diagnostic::error(code::NO_THREADS, format!("cannot start {count} threads: {error}"));
                 Some(pool.map_err(failed)?)
             }
         };
-        Ok(Self { space: space::Space::new(scene, options, backend)?, threads })
+        let engine = match scene.dimension() {
+            2 => Engine::Plane(plane::Plane::new(scene, options, backend)?),
+            _ => Engine::Space(space::Space::new(scene, options, backend)?),
+        };
+        Ok(Self { engine, threads })
     }
 
     /// What will run, and why.
     pub fn plan(&self) -> &Plan {
-        &self.space.plan
+        match &self.engine {
+            Engine::Space(space) => &space.plan,
+            Engine::Plane(plane) => &plane.plan,
+        }
     }
 
     /// Renders with the given values of the scene's parameters, in the scene's order.
     ///
     /// # Errors
-    /// If the work is cancelled (`E0605`).
+    /// If the work is cancelled (`E0504`).
     pub fn render(&self, parameters: &[Parameter], control: &Control<'_>) -> Result<Picture, Diagnostic> {
-        let work = || self.space.render(parameters, control);
+        let work = || match &self.engine {
+            Engine::Space(space) => space.render(parameters, control),
+            Engine::Plane(plane) => plane.render(parameters, control),
+        };
         match &self.threads {
             Some(pool) => pool.install(work),
             None => work(),

@@ -1,10 +1,13 @@
 //! What the user may choose about a picture.
 
+use serde::Deserialize;
+use serde::Serialize;
+
 use crate::derive::Precision;
 use crate::derive::Rounding;
 
 /// Which enclosures the beams use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Enclosures {
     /// The natural interval extension.
     Interval,

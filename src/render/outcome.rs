@@ -1,5 +1,8 @@
 //! What is known of a pixel.
 
+use serde::Deserialize;
+use serde::Serialize;
+
 /// What a ray meets first, and what of it is proved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
@@ -17,7 +20,7 @@ pub struct Outcome {
 }
 
 /// What is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Surface {
     /// The zero set.
     Field,

@@ -15,7 +15,7 @@ use crate::render::march::GROUPS;
 use crate::render::outcome::Surface;
 
 /// Colours of shapes in their order, sRGB, told apart by people with any colour vision (after Okabe and Ito 2008).
-const PALETTE: [[f64; 3]; 6] = [
+pub const PALETTE: [[f64; 3]; 6] = [
     [0.34, 0.60, 0.86],
     [0.90, 0.60, 0.16],
     [0.22, 0.66, 0.50],

@@ -1,6 +1,5 @@
 //! Space scenes: kernels, tiles and layers put together.
 
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -9,6 +8,7 @@ use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::kernel::Backend;
 use crate::program::scene::Parameter;
 use crate::program::scene::Projection;
@@ -51,6 +51,9 @@ use crate::render::tile::trace;
 /// The deepest cells of beams. Finer ones are left to single rays, whose double precision they would need.
 const LEAF: u8 = 12;
 
+/// Pixels along a side of the largest picture.
+const MAX_SIDE: u32 = 1 << 16;
+
 /// Where the rays of a picture are and how far they go; what rendering and verification have in common.
 pub struct Geometry {
     pub camera: Camera,
@@ -62,18 +65,11 @@ pub struct Geometry {
 
 impl Geometry {
     /// # Errors
-    /// If the domain is unbounded (`E0603`), the camera is impossible (`E0601`, `E0602`) or the picture has no pixels or
-    /// too many (`E0604`).
+    /// If the domain is unbounded (`E0502`), the camera is impossible (`E0501`) or the picture has no pixels or
+    /// too many (`E0503`).
     pub fn new(scene: &Scene, options: &Options) -> Result<Self, Diagnostic> {
-        if scene.domain.iter().any(|range| !range.is_bounded() || range.is_singleton()) {
-            return Err(Diagnostic::error("E0603", "the domain has no extent or no bounds")
-                .help("give every coordinate a range such as `[-2, 2]`"));
-        }
+        check(scene, options)?;
         let (width, height) = (options.width, options.height);
-        if width == 0 || height == 0 || width > 1 << 16 || height > 1 << 16 {
-            return Err(Diagnostic::error("E0604", format!("a picture of {width}x{height} pixels cannot be drawn"))
-                .help("write a size such as `512x512`; neither side may exceed 65536 pixels"));
-        }
         let camera = Camera::new(&scene.view.camera, &scene.domain, (width, height))?;
         let tiles = camera.tiles();
         let slab = scene.domain.iter().map(|range| range.width()).fold(0.0, f64::max);
@@ -130,6 +126,35 @@ impl Geometry {
             perspective,
         }
     }
+}
+
+/// The inputs that all rays of a picture share: the eye, or the direction of parallel rays, which have one dominant
+/// axis.
+pub fn shared_inputs(geometry: &Geometry) -> [(&'static str, f64); 3] {
+    let ray = Frame::new(&geometry.camera, geometry.tiles[0]).ray(0, 0);
+    let values = match geometry.camera.projection {
+        Projection::Perspective => ray.origin,
+        Projection::Orthographic => ray.direction,
+    };
+    let names = geometry.reach.shared();
+    std::array::from_fn(|c| (names[c], values[c]))
+}
+
+/// Refuses what cannot be drawn, in space or plane.
+///
+/// # Errors
+/// If the domain is unbounded (`E0502`), or the picture has no pixels or too many (`E0503`).
+pub fn check(scene: &Scene, options: &Options) -> Result<(), Diagnostic> {
+    if scene.domain.iter().any(|range| !range.is_bounded() || range.is_singleton()) {
+        return Err(Diagnostic::error(code::NO_EXTENT, "the domain has no extent or no bounds")
+            .help("give every coordinate a range such as `[-2, 2]`"));
+    }
+    let (width, height) = (options.width, options.height);
+    if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
+        return Err(Diagnostic::error(code::PICTURE_SIZE, format!("a picture of {width}x{height} pixels cannot be drawn"))
+            .help(format!("write a size such as `512x512`; neither side may exceed {MAX_SIDE} pixels")));
+    }
+    Ok(())
 }
 
 /// The longest direction of all rays.
@@ -205,11 +230,9 @@ impl<T: Format> ShapeKernels<T> {
         Ok(Self { plain, slope, ends, piece, face, root, gradient })
     }
 
-    fn bind(&self, shape: &Shape, parameters: &[Parameter], constants: &[(&str, f64)]) -> Tracer<T> {
+    fn bind(&self, parameters: &[Parameter], constants: &[(&str, f64)]) -> Tracer<T> {
         let ends = self.ends.bind(parameters, constants);
         Tracer {
-            kind: shape.kind,
-            condition: shape.condition.is_some(),
             plain: self.plain.bind(parameters, constants),
             slope: self.slope.bind(parameters, constants),
             piece: self.piece.bind(parameters, constants),
@@ -243,6 +266,10 @@ pub struct Space {
 
 impl Space {
     pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
+        if options.certificate && options.rounding == Rounding::Nearest {
+            return Err(Diagnostic::error(code::NO_CERTIFICATE, "unrounded arithmetic proves nothing, so there is no certificate of it")
+                .help("leave out `--rounding nearest` or `--certificate`"));
+        }
         let start = Instant::now();
         let geometry = Geometry::new(scene, options)?;
         let mut plan = Plan::default();
@@ -263,29 +290,16 @@ impl Space {
         }
     }
 
-    /// The inputs that all rays share, for a tile. Parallel rays are scaled to the tile's axis, so they differ by tile.
-    fn constants(&self, tile: Tile) -> [(&'static str, f64); 3] {
-        let ray = Frame::new(&self.geometry.camera, Tile { last_x: tile.x, last_y: tile.y, ..tile }).ray(0, 0);
-        let values = match self.geometry.camera.projection {
-            Projection::Perspective => ray.origin,
-            Projection::Orthographic => ray.direction,
-        };
-        let names = self.geometry.reach.shared();
-        std::array::from_fn(|c| (names[c], values[c]))
-    }
-
     fn render_with<T: Format>(
         &self,
         kernels: &[ShapeKernels<T>],
         parameters: &[Parameter],
         control: &Control<'_>,
     ) -> Result<Picture, Diagnostic> {
-        let tiles = &self.geometry.tiles;
-        // In either projection all tiles share these: the eye is one, and parallel rays have one dominant axis.
-        let constants = self.constants(tiles[0]);
+        let constants = shared_inputs(&self.geometry);
         let shapes = &self.scene.shapes;
         let tracers: Vec<Tracer<T>> =
-            kernels.iter().zip(shapes).map(|(kernels, shape)| kernels.bind(shape, parameters, &constants)).collect();
+            kernels.iter().map(|kernels| kernels.bind(parameters, &constants)).collect();
         let gradients: Vec<Option<(Program<f64>, f64)>> = kernels
             .iter()
             .map(|kernels| {
@@ -295,7 +309,7 @@ impl Space {
             })
             .collect();
         let shading = Shading::new(&self.scene.view, &self.geometry.camera, shapes.len());
-        let job = Job { space: self, tracers: &tracers, gradients: &gradients, shading: &shading };
+        let job = Job { space: self, parameters, tracers: &tracers, gradients: &gradients, shading: &shading };
         let mut times = Vec::new();
         let mut picture = Picture::default();
         for _ in 0..self.options.repeat.max(1) {
@@ -322,6 +336,7 @@ fn compile<T: Format>(
 /// One picture under way.
 struct Job<'a, T: Format> {
     space: &'a Space,
+    parameters: &'a [Parameter],
     tracers: &'a [Tracer<T>],
     gradients: &'a [Option<(Program<f64>, f64)>],
     shading: &'a Shading,
@@ -350,7 +365,7 @@ impl<T: Format> Job<'_, T> {
                 finished
             })
             .collect();
-        control.done.store(0, Ordering::Relaxed);
+        control.reset();
         let finished: Option<Vec<Finished>> = finished.into_iter().collect();
         let finished = finished.ok_or_else(Control::cancelled)?;
         Ok(self.assemble(finished))
@@ -465,7 +480,7 @@ impl<T: Format> Job<'_, T> {
         picture.stats.misses = count(Certainty::Miss);
         picture.stats.unknown = count(Certainty::Unknown) + count(Certainty::Unverified);
         if options.certificate {
-            picture.certificate = Some(Certificate::new(options, &picture.stats, covers));
+            picture.certificate = Some(Certificate::new((&self.space.scene, self.parameters), options, &picture.stats, covers));
         }
         picture
     }

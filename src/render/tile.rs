@@ -1,7 +1,6 @@
 //! One tile of a space scene: for every shape the outcome of every pixel, by beams, the solver and single rays in turn.
 
 use crate::kernel::Real;
-use crate::program::scene::ShapeKind;
 use crate::render::batch::Program;
 use crate::render::camera::TILE;
 use crate::render::finish::Finisher;
@@ -22,8 +21,6 @@ const ENOUGH: usize = 256;
 
 /// A shape's kernels, bound to parameters. Beams march in `T`, everything else is in double precision.
 pub struct Tracer<T: Real> {
-    pub kind: ShapeKind,
-    pub condition: bool,
     pub plain: Program<T>,
     pub slope: Program<T>,
     pub ends: Program<f64>,
