@@ -126,6 +126,7 @@ fn syntax() {
     check("syntax_ast", syntax_trees);
     check("syntax_tokens", syntax::dump::tokens);
     check("syntax_format", |input| syntax::format::format(FileId(0), input).unwrap());
+}
 
 /// Files held in memory, for `import`.
 struct Files(HashMap<String, String>);
