@@ -154,7 +154,8 @@ fn pictures_go_to_stdout() {
 fn layers_and_statistics_are_written() {
     let folder = folder(&[("ball.imp", SPHERE)]);
     let layers = ["--layer", "depth=d.png", "--layer", "normal=n.png", "--layer", "certainty=c.png"];
-    let arguments = [&["render", "ball.imp", "--size", "40x30", "--stats", "json", "--repeat", "3"], &layers[..]].concat();
+    let arguments =
+        [&["render", "ball.imp", "--size", "40x30", "--stats", "json", "--repeat", "3"], &layers[..]].concat();
     let line = succeed(folder.path(), &arguments);
     let stats: serde_json::Value = serde_json::from_str(&line).unwrap();
     for name in ["compile_ms", "render_ms", "threads", "pixels", "hits", "proved", "unknown", "evaluations"] {
@@ -169,7 +170,8 @@ fn layers_and_statistics_are_written() {
 #[test]
 fn without_rounding_nothing_is_proved() {
     let folder = folder(&[("ball.imp", SPHERE)]);
-    let line = succeed(folder.path(), &["render", "ball.imp", "--size", "32", "--rounding", "nearest", "--stats", "json"]);
+    let line =
+        succeed(folder.path(), &["render", "ball.imp", "--size", "32", "--rounding", "nearest", "--stats", "json"]);
     let stats: serde_json::Value = serde_json::from_str(&line).unwrap();
     assert!(stats["proved"] == 0 && stats["hits"].as_u64() > Some(0), "{line}");
 }
@@ -190,7 +192,8 @@ fn frames_are_numbered_and_differ() {
 
 #[test]
 fn parameters_are_set() {
-    let folder = folder(&[("ball.imp", "param radius = 1 in [0.1, 2]\nx^2 + y^2 + z^2 = radius^2\ndomain [-2, 2]^3\n")]);
+    let folder =
+        folder(&[("ball.imp", "param radius = 1 in [0.1, 2]\nx^2 + y^2 + z^2 = radius^2\ndomain [-2, 2]^3\n")]);
     let render = |setting: &'static str| ["render", "ball.imp", "--size", "32", "--stats", "json", "--set", setting];
     let hits = |setting| {
         let stats: serde_json::Value = serde_json::from_str(&succeed(folder.path(), &render(setting))).unwrap();

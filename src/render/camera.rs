@@ -11,6 +11,7 @@ use crate::diagnostic::code;
 use crate::interval::Interval;
 use crate::program::scene::CameraSettings;
 use crate::program::scene::Projection;
+use crate::render::extent::Cell;
 
 /// Pixels along the side of a full tile.
 pub const TILE: u32 = 64;
@@ -39,21 +40,21 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera of a scene; what the settings leave open frames the domain from a three-quarter view, z up.
+    /// The camera of a scene; what the settings leave open frames the cells that hold the shapes, from a three-quarter
+    /// view, z up.
     ///
     /// # Errors
     /// If the field of view is no angle between 0 and 150 degrees, or the camera looks at its own position.
-    pub fn new(
-        settings: &CameraSettings,
-        domain: &[Interval],
-        (width, height): (u32, u32),
-    ) -> Result<Self, Diagnostic> {
-        let low = DVec3::new(domain[0].lo(), domain[1].lo(), domain[2].lo());
-        let high = DVec3::new(domain[0].hi(), domain[1].hi(), domain[2].hi());
+    pub fn new(settings: &CameraSettings, cells: &[Cell], (width, height): (u32, u32)) -> Result<Self, Diagnostic> {
+        let low = cells.iter().map(|cell| cell.centre - cell.half).fold(DVec3::INFINITY, DVec3::min);
+        let high = cells.iter().map(|cell| cell.centre + cell.half).fold(DVec3::NEG_INFINITY, DVec3::max);
         let fov = settings.fov.unwrap_or(FIELD_OF_VIEW);
         if !(fov > 0.0 && fov <= 150.0) {
-            return Err(Diagnostic::error(code::BAD_CAMERA, format!("a field of view of {fov} degrees cannot be drawn"))
-                .help("write an angle between 0 and 150 degrees, for example `fov = 30`"));
+            return Err(Diagnostic::error(
+                code::BAD_CAMERA,
+                format!("a field of view of {fov} degrees cannot be drawn"),
+            )
+            .help("write an angle between 0 and 150 degrees, for example `fov = 30`"));
         }
         let projection = settings.projection.unwrap_or(Projection::Perspective);
         let centre = 0.5 * (low + high);
@@ -79,12 +80,12 @@ impl Camera {
 
         let aspect = f64::from(width) / f64::from(height);
         let half = (0.5 * fov.to_radians()).tan();
-        let corners = (0..8u8).map(|i| {
-            let pick = |bit: u8, axis: usize| if i >> bit & 1 == 0 { low[axis] } else { high[axis] };
-            DVec3::new(pick(0, 0), pick(1, 1), pick(2, 2)) - target
+        // Half the picture's height that holds a cell, and the depth of the cell's nearest corner beyond the target.
+        let reach = |cell: &Cell, axis: DVec3| ((cell.centre - target).dot(axis), cell.half.dot(axis.abs()));
+        let extents = cells.iter().map(|cell| {
+            let [(x, dx), (y, dy), (z, dz)] = [right, up, forward].map(|axis| reach(cell, axis));
+            (((y.abs() + dy).max((x.abs() + dx) / aspect)) / FRAME, z - dz)
         });
-        // Half the picture's height that holds a corner, and that corner's depth beyond the target.
-        let extents = corners.map(|c| (c.dot(up).abs().max(c.dot(right).abs() / aspect) / FRAME, c.dot(forward)));
         let (position, half_height) = match (settings.position, projection) {
             (Some(position), Projection::Perspective) => (DVec3::from(position), half),
             (Some(position), Projection::Orthographic) => (DVec3::from(position), half * away.length()),

@@ -8,6 +8,7 @@
 mod batch;
 mod camera;
 mod certificate;
+mod extent;
 mod finish;
 mod grid;
 pub mod image;
@@ -109,7 +110,8 @@ impl Renderer {
             None => None,
             Some(count) => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
-                let failed = |error| Diagnostic::error(code::NO_THREADS, format!("cannot start {count} threads: {error}"));
+                let failed =
+                    |error| Diagnostic::error(code::NO_THREADS, format!("cannot start {count} threads: {error}"));
                 Some(pool.map_err(failed)?)
             }
         };

@@ -329,7 +329,9 @@ impl<'a> Decider<'a> {
                     Finding::Open(sound) => open.push((*patch, sound)),
                 }
             }
-            for (patch, signs) in open.iter().filter(|(_, sound)| *sound).zip(self.corners(&open)).map(|((p, _), s)| (p, s)) {
+            for (patch, signs) in
+                open.iter().filter(|(_, sound)| *sound).zip(self.corners(&open)).map(|((p, _), s)| (p, s))
+            {
                 let both = [verdict::POSITIVE, verdict::NEGATIVE].iter().all(|&wanted| signs.contains(&wanted));
                 if both {
                     places[patch.pixel] = Place::Crossed;
@@ -414,7 +416,9 @@ impl<'a> Decider<'a> {
 /// The indices of a square's pixels in the block at (x, y).
 fn pixels(square: Square, x: u32, y: u32) -> impl Iterator<Item = usize> {
     let rows = square.y - y..square.y - y + square.size;
-    rows.flat_map(move |row| (square.x - x..square.x - x + square.size).map(move |column| (row * BLOCK + column) as usize))
+    rows.flat_map(move |row| {
+        (square.x - x..square.x - x + square.size).map(move |column| (row * BLOCK + column) as usize)
+    })
 }
 
 /// The four parts of an area, which share their ends.

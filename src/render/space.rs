@@ -22,6 +22,7 @@ use crate::render::camera::Frame;
 use crate::render::camera::Ray;
 use crate::render::camera::Tile;
 use crate::render::certificate::Certificate;
+use crate::render::extent::extent;
 use crate::render::grid::Grid;
 use crate::render::march::Context;
 use crate::render::march::Refuted;
@@ -70,7 +71,7 @@ impl Geometry {
     pub fn new(scene: &Scene, options: &Options) -> Result<Self, Diagnostic> {
         check(scene, options)?;
         let (width, height) = (options.width, options.height);
-        let camera = Camera::new(&scene.view.camera, &scene.domain, (width, height))?;
+        let camera = Camera::new(&scene.view.camera, &extent(scene), (width, height))?;
         let tiles = camera.tiles();
         let slab = scene.domain.iter().map(|range| range.width()).fold(0.0, f64::max);
         let corner = |sign: f64, unit: glam::DVec3, pixels: u32| sign * 0.5 * f64::from(pixels) * unit;
@@ -151,8 +152,11 @@ pub fn check(scene: &Scene, options: &Options) -> Result<(), Diagnostic> {
     }
     let (width, height) = (options.width, options.height);
     if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
-        return Err(Diagnostic::error(code::PICTURE_SIZE, format!("a picture of {width}x{height} pixels cannot be drawn"))
-            .help(format!("write a size such as `512x512`; neither side may exceed {MAX_SIDE} pixels")));
+        return Err(Diagnostic::error(
+            code::PICTURE_SIZE,
+            format!("a picture of {width}x{height} pixels cannot be drawn"),
+        )
+        .help(format!("write a size such as `512x512`; neither side may exceed {MAX_SIDE} pixels")));
     }
     Ok(())
 }
@@ -267,8 +271,11 @@ pub struct Space {
 impl Space {
     pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
         if options.certificate && options.rounding == Rounding::Nearest {
-            return Err(Diagnostic::error(code::NO_CERTIFICATE, "unrounded arithmetic proves nothing, so there is no certificate of it")
-                .help("leave out `--rounding nearest` or `--certificate`"));
+            return Err(Diagnostic::error(
+                code::NO_CERTIFICATE,
+                "unrounded arithmetic proves nothing, so there is no certificate of it",
+            )
+            .help("leave out `--rounding nearest` or `--certificate`"));
         }
         let start = Instant::now();
         let geometry = Geometry::new(scene, options)?;
@@ -298,8 +305,7 @@ impl Space {
     ) -> Result<Picture, Diagnostic> {
         let constants = shared_inputs(&self.geometry);
         let shapes = &self.scene.shapes;
-        let tracers: Vec<Tracer<T>> =
-            kernels.iter().map(|kernels| kernels.bind(parameters, &constants)).collect();
+        let tracers: Vec<Tracer<T>> = kernels.iter().map(|kernels| kernels.bind(parameters, &constants)).collect();
         let gradients: Vec<Option<(Program<f64>, f64)>> = kernels
             .iter()
             .map(|kernels| {
@@ -480,7 +486,8 @@ impl<T: Format> Job<'_, T> {
         picture.stats.misses = count(Certainty::Miss);
         picture.stats.unknown = count(Certainty::Unknown) + count(Certainty::Unverified);
         if options.certificate {
-            picture.certificate = Some(Certificate::new((&self.space.scene, self.parameters), options, &picture.stats, covers));
+            picture.certificate =
+                Some(Certificate::new((&self.space.scene, self.parameters), options, &picture.stats, covers));
         }
         picture
     }

@@ -201,7 +201,8 @@ impl Checker<'_> {
             .map(|pixel| self.context.frame.ray(pixel % width, pixel / width).clip(self.context.domain))
             .collect();
         // How far each ray is refuted.
-        let mut reached: Vec<f64> = clips.iter().map(|clip| clip.map_or(f64::INFINITY, |(entry, _)| entry[0])).collect();
+        let mut reached: Vec<f64> =
+            clips.iter().map(|clip| clip.map_or(f64::INFINITY, |(entry, _)| entry[0])).collect();
 
         let mut cells = Vec::with_capacity(proof.cover.len());
         for &cell in &proof.cover {
@@ -394,13 +395,7 @@ impl Checker<'_> {
     }
 
     /// Whether a bracket holds what is claimed.
-    fn is_hit(
-        &mut self,
-        surface: Surface,
-        ray: &Hull,
-        [a, b]: [f64; 2],
-        (entry, _): ([f64; 2], [f64; 2]),
-    ) -> bool {
+    fn is_hit(&mut self, surface: Surface, ray: &Hull, [a, b]: [f64; 2], (entry, _): ([f64; 2], [f64; 2])) -> bool {
         match surface {
             Surface::Field => {
                 let [first, last] = self.signs(ray, [a, b]);

@@ -1,7 +1,7 @@
 //! Affine forms against exact rationals: the form must hold the true value at the true symbols, not only somewhere.
 
-use super::super::{Affine, Interval};
 use super::{cases, exact, interval, members};
+use crate::interval::{Affine, Interval};
 use fastrand::Rng;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};

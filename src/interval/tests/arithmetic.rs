@@ -1,7 +1,7 @@
 //! The four operations and their kin against exact rationals: containment, inclusion and tightness on every box.
 
-use super::super::{Interval, decimal};
 use super::{cases, exact, interval, is_rounded_down, is_rounded_up, members, number, part};
+use crate::interval::{Interval, decimal};
 use fastrand::Rng;
 use num_bigint::BigInt;
 use num_rational::BigRational;

@@ -1,8 +1,8 @@
 //! Decorations from the definitions of IEEE 1788, 8.8 and 11.
 
-use super::super::Decoration::{Com, Dac, Def, Ill, Trv};
-use super::super::{Decorated, Decoration, Interval, Verdict};
 use super::set;
+use crate::interval::Decoration::{Com, Dac, Def, Ill, Trv};
+use crate::interval::{Decorated, Decoration, Interval, Verdict};
 
 const INF: f64 = f64::INFINITY;
 

@@ -1,7 +1,7 @@
 //! Functions of one and two arguments against 256-bit values: containment on boxes, tightness on points, decorations.
 
-use super::super::{Decorated, Decoration, Interval};
 use super::{big, cases, interval, members, number, part};
+use crate::interval::{Decorated, Decoration, Interval};
 use astro_float::{BigFloat, Consts, RoundingMode};
 use fastrand::Rng;
 use std::cmp::Ordering;

@@ -1,7 +1,7 @@
 //! Powers: those with a rational exponent by comparing q-th powers of the bounds with the p-th power of the argument.
 
-use super::super::{Decorated, Decoration, Interval};
 use super::{big, cases, exact, interval, members, number, part};
+use crate::interval::{Decorated, Decoration, Interval};
 use astro_float::{BigFloat, Consts, RoundingMode};
 use fastrand::Rng;
 use num_integer::Integer;

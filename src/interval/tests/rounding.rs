@@ -1,7 +1,7 @@
 //! Directed rounding against exact rationals.
 
-use super::super::round::*;
 use super::{cases, exact, is_rounded_down, is_rounded_up, number};
+use crate::interval::round::*;
 use fastrand::Rng;
 use num_bigint::BigInt;
 use num_rational::BigRational;

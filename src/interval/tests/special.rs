@@ -1,8 +1,8 @@
 //! Tables of special values, from the rules of IEEE 1788: empties, unbounded sets, zeros, poles and ends of domains.
 
-use super::super::Verdict::{Proved, Refuted, Unknown};
-use super::super::{Interval, Verdict};
 use super::set;
+use crate::interval::Verdict::{Proved, Refuted, Unknown};
+use crate::interval::{Interval, Verdict};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
