@@ -52,8 +52,11 @@ impl Camera {
         let high = DVec3::new(domain[0].hi(), domain[1].hi(), domain[2].hi());
         let fov = settings.fov.unwrap_or(FIELD_OF_VIEW);
         if !(fov > 0.0 && fov <= 150.0) {
-            return Err(Diagnostic::error(code::BAD_CAMERA, format!("a field of view of {fov} degrees cannot be drawn"))
-                .help("write an angle between 0 and 150 degrees, for example `fov = 30`"));
+            return Err(Diagnostic::error(
+                code::BAD_CAMERA,
+                format!("a field of view of {fov} degrees cannot be drawn"),
+            )
+            .help("write an angle between 0 and 150 degrees, for example `fov = 30`"));
         }
         let projection = settings.projection.unwrap_or(Projection::Perspective);
         let centre = 0.5 * (low + high);

@@ -80,7 +80,10 @@ impl Canvas<'_> {
             }
             evaluations += batch.evaluations;
         }
-        (colors.into_iter().map(|color| color.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8)).collect(), evaluations)
+        (
+            colors.into_iter().map(|color| color.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8)).collect(),
+            evaluations,
+        )
     }
 
     /// The colour under everything: grid lines at round numbers, the axes darker.

@@ -109,7 +109,8 @@ impl Renderer {
             None => None,
             Some(count) => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
-                let failed = |error| Diagnostic::error(code::NO_THREADS, format!("cannot start {count} threads: {error}"));
+                let failed =
+                    |error| Diagnostic::error(code::NO_THREADS, format!("cannot start {count} threads: {error}"));
                 Some(pool.map_err(failed)?)
             }
         };

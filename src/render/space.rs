@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
@@ -151,8 +150,11 @@ pub fn check(scene: &Scene, options: &Options) -> Result<(), Diagnostic> {
     }
     let (width, height) = (options.width, options.height);
     if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
-        return Err(Diagnostic::error(code::PICTURE_SIZE, format!("a picture of {width}x{height} pixels cannot be drawn"))
-            .help(format!("write a size such as `512x512`; neither side may exceed {MAX_SIDE} pixels")));
+        return Err(Diagnostic::error(
+            code::PICTURE_SIZE,
+            format!("a picture of {width}x{height} pixels cannot be drawn"),
+        )
+        .help(format!("write a size such as `512x512`; neither side may exceed {MAX_SIDE} pixels")));
     }
     Ok(())
 }
@@ -197,13 +199,13 @@ impl<T: Format> ShapeKernels<T> {
         let orders = Orders { scene, shape, reach, rounding: options.rounding, arithmetic: beams };
         let double = Precision::Double;
 
-        let spec = orders.plain(beams);
+        let spec = orders.beam();
         plan.kernel(shape, "beam", T::PRECISION, &spec, "refutes cells of beams");
         let plain = Compiled::new(backend, &spec)?;
         let spec = orders.slope();
         plan.kernel(shape, "slope", T::PRECISION, &spec, "settles cells in which the field is monotone along rays");
         let slope = Compiled::new(backend, &spec)?;
-        let spec = orders.plain(Arithmetic::Interval);
+        let spec = orders.ends();
         plan.kernel(shape, "ends", double, &spec, "proves the signs at the ends of brackets");
         let ends = Compiled::new(backend, &spec)?;
         let spec = orders.piece();
@@ -267,8 +269,11 @@ pub struct Space {
 impl Space {
     pub fn new(scene: &Scene, options: &Options, backend: &dyn Backend) -> Result<Self, Diagnostic> {
         if options.certificate && options.rounding == Rounding::Nearest {
-            return Err(Diagnostic::error(code::NO_CERTIFICATE, "unrounded arithmetic proves nothing, so there is no certificate of it")
-                .help("leave out `--rounding nearest` or `--certificate`"));
+            return Err(Diagnostic::error(
+                code::NO_CERTIFICATE,
+                "unrounded arithmetic proves nothing, so there is no certificate of it",
+            )
+            .help("leave out `--rounding nearest` or `--certificate`"));
         }
         let start = Instant::now();
         let geometry = Geometry::new(scene, options)?;
@@ -298,8 +303,7 @@ impl Space {
     ) -> Result<Picture, Diagnostic> {
         let constants = shared_inputs(&self.geometry);
         let shapes = &self.scene.shapes;
-        let tracers: Vec<Tracer<T>> =
-            kernels.iter().map(|kernels| kernels.bind(parameters, &constants)).collect();
+        let tracers: Vec<Tracer<T>> = kernels.iter().map(|kernels| kernels.bind(parameters, &constants)).collect();
         let gradients: Vec<Option<(Program<f64>, f64)>> = kernels
             .iter()
             .map(|kernels| {
@@ -480,7 +484,8 @@ impl<T: Format> Job<'_, T> {
         picture.stats.misses = count(Certainty::Miss);
         picture.stats.unknown = count(Certainty::Unknown) + count(Certainty::Unverified);
         if options.certificate {
-            picture.certificate = Some(Certificate::new((&self.space.scene, self.parameters), options, &picture.stats, covers));
+            picture.certificate =
+                Some(Certificate::new((&self.space.scene, self.parameters), options, &picture.stats, covers));
         }
         picture
     }

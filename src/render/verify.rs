@@ -4,7 +4,6 @@
 
 use rayon::prelude::*;
 
-use crate::derive::Arithmetic;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
@@ -78,7 +77,7 @@ pub fn verify(
         let (beams, _) = arithmetic(&scene.graph, shape.field, enclosures);
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: Rounding::Outward, arithmetic: beams };
-        let specs = [orders.slope(), orders.plain(Arithmetic::Interval), orders.face()];
+        let specs = [orders.slope(), orders.verdicts(), orders.face()];
         let mut bound = Vec::new();
         for spec in specs {
             bound.push(Compiled::<f64>::new(backend, &spec)?.bind(&scene.parameters, &constants));
@@ -201,7 +200,8 @@ impl Checker<'_> {
             .map(|pixel| self.context.frame.ray(pixel % width, pixel / width).clip(self.context.domain))
             .collect();
         // How far each ray is refuted.
-        let mut reached: Vec<f64> = clips.iter().map(|clip| clip.map_or(f64::INFINITY, |(entry, _)| entry[0])).collect();
+        let mut reached: Vec<f64> =
+            clips.iter().map(|clip| clip.map_or(f64::INFINITY, |(entry, _)| entry[0])).collect();
 
         let mut cells = Vec::with_capacity(proof.cover.len());
         for &cell in &proof.cover {
@@ -394,13 +394,7 @@ impl Checker<'_> {
     }
 
     /// Whether a bracket holds what is claimed.
-    fn is_hit(
-        &mut self,
-        surface: Surface,
-        ray: &Hull,
-        [a, b]: [f64; 2],
-        (entry, _): ([f64; 2], [f64; 2]),
-    ) -> bool {
+    fn is_hit(&mut self, surface: Surface, ray: &Hull, [a, b]: [f64; 2], (entry, _): ([f64; 2], [f64; 2])) -> bool {
         match surface {
             Surface::Field => {
                 let [first, last] = self.signs(ray, [a, b]);
