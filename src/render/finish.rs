@@ -278,8 +278,8 @@ impl<'a> Finisher<'a> {
         let continuous = bits & verdict::CONTINUOUS != 0;
         let natural = sign(bits);
         let (centred, growth) =
-            if continuous { (sign(self.piece.bits(lane, 6)), sign(self.piece.bits(lane, 5))) } else { (0, 0) };
-        let condition = if self.context.condition { self.piece.bits(lane, 7) } else { !verdict::REFUTED };
+            if continuous { (sign(self.piece.bits(lane, 4)), sign(self.piece.bits(lane, 3))) } else { (0, 0) };
+        let condition = if self.context.condition { self.piece.bits(lane, 5) } else { !verdict::REFUTED };
         Evidence {
             sign: if natural != 0 { natural } else { centred },
             empty: bits & verdict::EMPTY != 0,
@@ -398,7 +398,12 @@ impl<'a> Finisher<'a> {
                 Stop::Depth(_) | Stop::Epsilon(_) => walker.depth >= self.depth,
             };
             if fine {
-                outcome.hit(bracket, 0.5 * (walker.p + walker.q), Surface::Field);
+                // What was absorbed is where the field is closest to 0.
+                let t = match walker.open {
+                    Some(_) => 0.5 * (stretch.start + walker.p),
+                    None => 0.5 * (walker.p + walker.q),
+                };
+                outcome.hit(bracket, t, Surface::Field);
                 return Step::Done;
             }
             walker.fallback = Some(bracket);

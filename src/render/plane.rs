@@ -241,6 +241,13 @@ struct Square {
     size: u32,
 }
 
+impl Square {
+    /// Column and row of each of its pixels.
+    fn places(self) -> impl Iterator<Item = (u32, u32)> {
+        (self.y..self.y + self.size).flat_map(move |y| (self.x..self.x + self.size).map(move |x| (x, y)))
+    }
+}
+
 /// A part of a pixel to be decided.
 #[derive(Debug, Clone, Copy)]
 struct Patch {
@@ -288,12 +295,16 @@ impl<'a> Decider<'a> {
                 match finding {
                     Finding::Outside => {}
                     Finding::Inside => {
-                        for pixel in pixels(square, x, y) {
-                            places[pixel] = Place::Inside;
+                        let last = (self.raster.x.len() as u32 - 2, self.raster.y.len() as u32 - 2);
+                        for (column, row) in square.places().filter(|&(column, row)| column <= last.0 && row <= last.1) {
+                            // The square may reach beyond the domain.
+                            if self.raster.clip(column, row, 1).is_some() {
+                                places[((row - y) * BLOCK + column - x) as usize] = Place::Inside;
+                            }
                         }
                     }
                     Finding::Open(_) if square.size == 1 => {
-                        patches.extend(pixels(square, x, y).map(|pixel| Patch { pixel, area }));
+                        patches.push(Patch { pixel: ((square.y - y) * BLOCK + square.x - x) as usize, area });
                     }
                     Finding::Open(_) => {
                         let (width, height) = (self.raster.x.len() as u32 - 1, self.raster.y.len() as u32 - 1);
@@ -411,14 +422,6 @@ impl<'a> Decider<'a> {
         }
         signs.chunks_exact(4).map(|s| [s[0], s[1], s[2], s[3]]).collect()
     }
-}
-
-/// The indices of a square's pixels in the block at (x, y).
-fn pixels(square: Square, x: u32, y: u32) -> impl Iterator<Item = usize> {
-    let rows = square.y - y..square.y - y + square.size;
-    rows.flat_map(move |row| {
-        (square.x - x..square.x - x + square.size).map(move |column| (row * BLOCK + column) as usize)
-    })
 }
 
 /// The four parts of an area, which share their ends.

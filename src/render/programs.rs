@@ -96,46 +96,55 @@ pub struct Orders<'a> {
 }
 
 impl Orders<'_> {
-    /// Box in, verdict of the field out, then the condition's if there is one: what refutes cells.
-    pub fn plain(&self, arithmetic: Arithmetic) -> Spec {
-        let ray = self.ray();
-        self.along_ray(ray, &[], arithmetic, |_, formulas| vec![Output::Verdict(formulas.field)])
+    /// Box in, refutation of the field out, then the condition's verdict if there is one: what refutes cells of beams.
+    pub fn beam(&self) -> Spec {
+        self.along_ray(&[], self.arithmetic, |_, formulas| vec![Output::Refutation(formulas.field)])
     }
 
-    /// Box, centre and end in; verdicts of the field, its centred form, its slope, its value at the end, and the
-    /// condition's out: what settles cells with their derivative.
-    pub fn slope(&self) -> Spec {
-        let ray = self.ray();
-        self.along_ray(ray, &[CENTRE, END], self.arithmetic, |graph, formulas| {
-            let slope = derive::derivative(graph, formulas.field, formulas.t);
-            let centred = derive::centred(graph, formulas.field, formulas.t, CENTRE);
-            let end = graph.var(END);
-            let at_end = graph.substitute(&[formulas.field], &HashMap::from([(formulas.t, end)]))[0];
-            [formulas.field, centred, slope, at_end].map(Output::Verdict).to_vec()
-        })
+    /// The same by plain intervals: what proves signs at points of single rays.
+    pub fn ends(&self) -> Spec {
+        self.along_ray(&[], Arithmetic::Interval, |_, formulas| vec![Output::Refutation(formulas.field)])
     }
 
-    /// Box and centre in; enclosures of field and slope, verdicts of the centred form and the condition out.
-    pub fn piece(&self) -> Spec {
-        let ray = self.ray();
-        self.along_ray(ray, &[CENTRE], Arithmetic::Interval, |graph, formulas| {
-            let slope = derive::derivative(graph, formulas.field, formulas.t);
-            let centred = derive::centred(graph, formulas.field, formulas.t, CENTRE);
-            vec![Output::Enclosure(formulas.field), Output::Enclosure(slope), Output::Verdict(centred)]
-        })
+    /// Box in, verdicts of field and condition out.
+    pub fn verdicts(&self) -> Spec {
+        self.along_ray(&[], Arithmetic::Interval, |_, formulas| vec![Output::Verdict(formulas.field)])
     }
 
-    /// As [`Orders::plain`], but blind to the domain: what decides at the domain's faces.
+    /// As [`Orders::verdicts`], but blind to the domain: what decides at the domain's faces.
     pub fn face(&self) -> Spec {
-        let mut spec = self.plain(Arithmetic::Interval);
+        let mut spec = self.verdicts();
         spec.domain.clear();
         spec
     }
 
+    /// Box, centre and end in; the verdict of the field, refutations of its centred form, its slope and its value at the
+    /// end, and the condition's verdict out: what settles cells with their derivative.
+    pub fn slope(&self) -> Spec {
+        self.along_ray(&[CENTRE, END], self.arithmetic, |graph, formulas| {
+            let slope = derive::derivative(graph, formulas.field, formulas.t);
+            let centred = derive::centred(graph, formulas.field, formulas.t, CENTRE);
+            let end = graph.var(END);
+            let at_end = graph.substitute(&[formulas.field], &HashMap::from([(formulas.t, end)]))[0];
+            let mut outputs = vec![Output::Verdict(formulas.field)];
+            outputs.extend([centred, slope, at_end].map(Output::Refutation));
+            outputs
+        })
+    }
+
+    /// Box and centre in; the enclosure of the field, refutations of its slope and its centred form, and the condition's
+    /// verdict out.
+    pub fn piece(&self) -> Spec {
+        self.along_ray(&[CENTRE], Arithmetic::Interval, |graph, formulas| {
+            let slope = derive::derivative(graph, formulas.field, formulas.t);
+            let centred = derive::centred(graph, formulas.field, formulas.t, CENTRE);
+            vec![Output::Enclosure(formulas.field), Output::Refutation(slope), Output::Refutation(centred)]
+        })
+    }
+
     /// Point in; field and slope out: what Newton's method follows.
     pub fn root(&self) -> Spec {
-        let ray = self.ray();
-        let mut spec = self.along_ray(ray, &[], Arithmetic::Point, |graph, formulas| {
+        let mut spec = self.along_ray(&[], Arithmetic::Point, |graph, formulas| {
             let slope = derive::derivative(graph, formulas.field, formulas.t);
             vec![Output::Value(formulas.field), Output::Value(slope)]
         });
@@ -170,19 +179,15 @@ impl Orders<'_> {
         &COORDINATES[..self.scene.dimension()]
     }
 
-    fn ray(&self) -> derive::RayGraph {
-        let mut roots = vec![self.shape.field];
-        roots.extend(self.shape.condition);
-        derive::along_ray(&self.scene.graph, &roots, self.scene.dimension())
-    }
-
     fn along_ray(
         &self,
-        mut ray: derive::RayGraph,
         extra: &[&'static str],
         arithmetic: Arithmetic,
         outputs: impl FnOnce(&mut Graph, Formulas) -> Vec<Output>,
     ) -> Spec {
+        let mut roots = vec![self.shape.field];
+        roots.extend(self.shape.condition);
+        let mut ray = derive::along_ray(&self.scene.graph, &roots, self.scene.dimension());
         let reach = self.reach.expect("only a space scene casts rays");
         let mut outputs = outputs(&mut ray.graph, Formulas { field: ray.roots[0], t: ray.t });
         if let (Some(&condition), false) = (ray.roots.get(1), arithmetic == Arithmetic::Point) {

@@ -14,12 +14,18 @@ use crate::render::march::place;
 use crate::render::march::sign;
 use crate::render::options::Stop;
 
-/// Steps of Newton's method from the middle of a cell. Cells that are settled by their slope are short against the
-/// curvature, so that two steps nearly always reach the last bits that matter; a third is for the others.
-const STEPS: usize = 3;
+/// Steps of Newton's method at most. Cells that are settled by their slope are short against the curvature, so that
+/// two or three steps nearly always reach the last bits that matter; the others are for silhouettes.
+const STEPS: usize = 10;
 
-/// How often a subcell is moved to a neighbour after a sign contradicted it.
-const MOVES: usize = 3;
+/// Steps that every pixel takes; then only those that still move.
+const COMMON_STEPS: usize = 2;
+
+/// A step shorter than this share of the reported cell ends Newton's method.
+const SETTLED: f64 = 1.0 / 64.0;
+
+/// How often a subcell is moved after a sign contradicted it: to a neighbour twice, then by bisection.
+const MOVES: usize = 40;
 
 /// What became of a settled pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,15 +52,20 @@ pub struct Solver<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Trial {
     ray: [f64; 3],
+    /// What Newton's method believes the zero to be in.
     lo: f64,
     hi: f64,
     t: f64,
     slope: f64,
+    moving: bool,
     depth: u8,
     cell: u64,
     /// The ends of that cell, inside [a, b].
     start: f64,
     end: f64,
+    /// The last end before the zero and the first one after it, proved.
+    before: Option<f64>,
+    after: Option<f64>,
     open: bool,
 }
 
@@ -83,35 +94,41 @@ impl<'a> Solver<'a> {
 
     fn begin(&self, job: &Settled) -> Trial {
         let (x, y) = place(job.pixel);
-        let ray = self.context.frame.varying(x, y);
-        let t = 0.5 * (job.a + job.b);
         Trial {
-            ray,
+            ray: self.context.frame.varying(x, y),
             lo: job.a,
             hi: job.b,
-            t,
+            t: 0.5 * (job.a + job.b),
             slope: 0.0,
+            moving: true,
             depth: self.depth,
             cell: 0,
             start: job.a,
             end: job.b,
+            before: job.crossing.then_some(job.a),
+            after: job.crossing.then_some(job.b),
             open: true,
         }
     }
 
     /// Newton's method, kept inside a bracket that each value's sign tightens. Nothing is proved here.
     fn newton(&mut self, jobs: &[Settled], trials: &mut [Trial]) {
-        for (lane, trial) in trials.iter().enumerate() {
-            for (slot, &component) in trial.ray.iter().enumerate() {
-                self.root.set(lane, slot, component);
+        let settled = SETTLED * self.context.grid.unit(self.depth);
+        for step in 0..STEPS {
+            let active: Vec<usize> =
+                (0..trials.len()).filter(|&index| step < COMMON_STEPS || trials[index].moving).collect();
+            if active.is_empty() {
+                return;
             }
-        }
-        for _ in 0..STEPS {
-            for (lane, trial) in trials.iter().enumerate() {
-                self.root.set(lane, 3, trial.t);
+            for (lane, &index) in active.iter().enumerate() {
+                for (slot, &component) in trials[index].ray.iter().enumerate() {
+                    self.root.set(lane, slot, component);
+                }
+                self.root.set(lane, 3, trials[index].t);
             }
-            self.root.run(trials.len());
-            for (lane, (trial, job)) in trials.iter_mut().zip(jobs).enumerate() {
+            self.root.run(active.len());
+            for (lane, &index) in active.iter().enumerate() {
+                let (trial, job) = (&mut trials[index], &jobs[index]);
                 let (value, slope) = (self.root.get(lane, 0), self.root.get(lane, 1));
                 if (value < 0.0) == (job.growth == verdict::POSITIVE) {
                     trial.lo = trial.t;
@@ -120,13 +137,14 @@ impl<'a> Solver<'a> {
                 }
                 let next = trial.t - value / slope;
                 let next = if next.is_finite() { next } else { 0.5 * (trial.lo + trial.hi) };
-                trial.t = next.clamp(trial.lo, trial.hi);
-                trial.slope = slope;
+                let next = next.clamp(trial.lo, trial.hi);
+                trial.moving = (next - trial.t).abs() > settled;
+                (trial.t, trial.slope) = (next, slope);
             }
         }
     }
 
-    /// Proves the sign at both ends of the subcell of each trial, moving it to a neighbour where a sign says so.
+    /// Proves the sign at both ends of the subcell of each trial, moving it where a sign says so.
     fn prove(&mut self, jobs: &[Settled], trials: &mut [Trial]) -> Vec<Settlement> {
         let mut settlements = vec![Settlement::Open; jobs.len()];
         for trial in trials.iter_mut() {
@@ -136,61 +154,77 @@ impl<'a> Solver<'a> {
             }
             trial.cell = self.context.grid.cell(trial.t, trial.depth);
         }
-        for _ in 0..MOVES {
-            let mut lanes = Vec::with_capacity(2 * trials.len());
-            for (index, (trial, job)) in trials.iter_mut().zip(jobs).enumerate() {
-                if !trial.open {
-                    continue;
-                }
+        for step in 0..MOVES {
+            let open: Vec<usize> = (0..trials.len()).filter(|&index| trials[index].open).collect();
+            if open.is_empty() {
+                break;
+            }
+            for (pair, &index) in open.iter().enumerate() {
+                let (trial, job) = (&mut trials[index], &jobs[index]);
                 let grid = self.context.grid;
-                trial.start = grid.cut(trial.cell, trial.depth).max(job.a);
-                trial.end = grid.cut(trial.cell + 1, trial.depth).min(job.b);
-                for t in [trial.start, trial.end] {
-                    let lane = lanes.len();
+                trial.start = grid.cut(trial.cell, trial.depth).clamp(job.a, job.b);
+                trial.end = grid.cut(trial.cell + 1, trial.depth).clamp(job.a, job.b);
+                for (lane, t) in [(2 * pair, trial.start), (2 * pair + 1, trial.end)] {
                     for (slot, &component) in trial.ray.iter().enumerate() {
                         self.ends.set_range(lane, slot, component, component);
                     }
                     self.ends.set_range(lane, 3, t, t);
-                    lanes.push(index);
                 }
             }
-            if lanes.is_empty() {
-                break;
-            }
-            self.ends.run(lanes.len());
-            for (pair, indices) in lanes.chunks_exact(2).enumerate() {
-                let index = indices[0];
-                let (trial, job) = (&mut trials[index], &jobs[index]);
-                let (start, end) = (trial.start, trial.end);
+            self.ends.run(2 * open.len());
+            for (pair, &index) in open.iter().enumerate() {
                 let signs = [sign(self.ends.bits(2 * pair, 0)), sign(self.ends.bits(2 * pair + 1, 0))];
-                trial.open = false;
-                if signs[0] == opposite(job.growth) && signs[1] == job.growth {
-                    settlements[index] = Settlement::Hit { bracket: [start, end], t: trial.t.clamp(start, end) };
-                } else if signs[0] == job.growth {
-                    if start > job.a {
-                        trial.cell -= 1;
-                        trial.open = true;
-                    } else if !self.context.region {
-                        settlements[index] = Settlement::Refuted;
-                    }
-                } else if signs[1] == opposite(job.growth) {
-                    if end < job.b {
-                        trial.cell += 1;
-                        trial.open = true;
-                    } else {
-                        settlements[index] = Settlement::Refuted;
-                    }
-                } else {
-                    // A sign too close to 0 to prove: the whole cell may still have proved ends.
-                    settlements[index] = Settlement::Open;
-                }
+                settlements[index] = self.judge(&jobs[index], &mut trials[index], signs, step);
             }
         }
-        for (settlement, (trial, job)) in settlements.iter_mut().zip(trials.iter().zip(jobs)) {
-            if *settlement == Settlement::Open && job.crossing {
-                *settlement = Settlement::Hit { bracket: [job.a, job.b], t: trial.t };
+        for (trial, settlement) in trials.iter().zip(&mut settlements) {
+            if let (true, Some(start), Some(end)) = (trial.open, trial.before, trial.after) {
+                *settlement = Settlement::Hit { bracket: [start, end], t: trial.t.clamp(start, end) };
             }
         }
         settlements
+    }
+
+    /// What the signs at the ends of a trial's subcell prove; if nothing yet, the trial stays open and has moved.
+    fn judge(&self, job: &Settled, trial: &mut Trial, [first, last]: [u32; 2], step: usize) -> Settlement {
+        let (before, after) = (opposite(job.growth), job.growth);
+        trial.open = false;
+        if first == before && last == after {
+            let (start, end) = (trial.start, trial.end);
+            return Settlement::Hit { bracket: [start, end], t: trial.t.clamp(start, end) };
+        }
+        for (sign, t) in [(first, trial.start), (last, trial.end)] {
+            if sign == before {
+                trial.before = Some(trial.before.map_or(t, |known| known.max(t)));
+            } else if sign == after {
+                trial.after = Some(trial.after.map_or(t, |known| known.min(t)));
+            }
+        }
+        if trial.after == Some(job.a) {
+            // Past the zero from the start: a solid is entered before this cell, if at all.
+            return if self.context.region { Settlement::Open } else { Settlement::Refuted };
+        }
+        if trial.before == Some(job.b) {
+            return Settlement::Refuted;
+        }
+        let grid = self.context.grid;
+        let next = match (first == after, last == before) {
+            (true, _) if step < 2 => trial.cell.saturating_sub(1),
+            (_, true) if step < 2 => trial.cell + 1,
+            _ => {
+                let (lo, hi) = (trial.before.unwrap_or(job.a), trial.after.unwrap_or(job.b));
+                grid.cell(0.5 * (lo + hi), trial.depth)
+            }
+        };
+        if next != trial.cell {
+            trial.cell = next;
+            trial.open = true;
+            return Settlement::Open;
+        }
+        // A sign too close to 0 to prove: what is proved farther out has to do.
+        match (trial.before, trial.after) {
+            (Some(start), Some(end)) => Settlement::Hit { bracket: [start, end], t: trial.t.clamp(start, end) },
+            _ => Settlement::Open,
+        }
     }
 }

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
@@ -201,13 +200,13 @@ impl<T: Format> ShapeKernels<T> {
         let orders = Orders { scene, shape, reach, rounding: options.rounding, arithmetic: beams };
         let double = Precision::Double;
 
-        let spec = orders.plain(beams);
+        let spec = orders.beam();
         plan.kernel(shape, "beam", T::PRECISION, &spec, "refutes cells of beams");
         let plain = Compiled::new(backend, &spec)?;
         let spec = orders.slope();
         plan.kernel(shape, "slope", T::PRECISION, &spec, "settles cells in which the field is monotone along rays");
         let slope = Compiled::new(backend, &spec)?;
-        let spec = orders.plain(Arithmetic::Interval);
+        let spec = orders.ends();
         plan.kernel(shape, "ends", double, &spec, "proves the signs at the ends of brackets");
         let ends = Compiled::new(backend, &spec)?;
         let spec = orders.piece();

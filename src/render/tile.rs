@@ -76,8 +76,10 @@ pub fn trace<T: Real>(context: Context<'_>, tracer: &Tracer<T>, effort: Effort) 
         let mut onward = Onward::default();
         finisher.run(&singles, &mut outcomes, &mut march.cover, &mut onward);
         solver.run(&onward.settled, |job, settlement| {
-            if let Settlement::Hit { bracket, t } = settlement {
-                outcomes[usize::from(job.pixel)].hit(bracket, t, Surface::Field);
+            let outcome = &mut outcomes[usize::from(job.pixel)];
+            match settlement {
+                Settlement::Hit { bracket, t } => outcome.hit(bracket, t, Surface::Field),
+                Settlement::Refuted | Settlement::Open => outcome.undecided([job.a, job.b], true),
             }
         });
         for single in onward.resumed {

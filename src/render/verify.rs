@@ -4,7 +4,6 @@
 
 use rayon::prelude::*;
 
-use crate::derive::Arithmetic;
 use crate::derive::Rounding;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
@@ -78,7 +77,7 @@ pub fn verify(
         let (beams, _) = arithmetic(&scene.graph, shape.field, enclosures);
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: Rounding::Outward, arithmetic: beams };
-        let specs = [orders.slope(), orders.plain(Arithmetic::Interval), orders.face()];
+        let specs = [orders.slope(), orders.verdicts(), orders.face()];
         let mut bound = Vec::new();
         for spec in specs {
             bound.push(Compiled::<f64>::new(backend, &spec)?.bind(&scene.parameters, &constants));

@@ -1,0 +1,6 @@
+//! The ray caster and the plotter of plane scenes.
+
+mod certificate;
+mod plane;
+mod scenes;
+mod space;
