@@ -113,7 +113,6 @@ fn hostile_files_get_helpful_messages() {
         ("million_terms", sum.into()),
         ("doubling_60", half_program(60).into()),
         ("long_name", format!("surface s: {} = 1\n", "a".repeat(100_000)).into()),
-        ("many_errors", "surface s: x + = 1\n".repeat(1000).into()),
     ];
     let folder = tempfile::tempdir().unwrap();
     let mut faults = String::new();
@@ -124,6 +123,13 @@ fn hostile_files_get_helpful_messages() {
     fs::create_dir(folder.path().join("folder.imp")).unwrap();
     faults.extend(compare(folder.path(), "folder"));
     assert!(faults.is_empty(), "{faults}Run with IMP_BLESS=1 to accept.");
+}
+
+#[test]
+fn many_errors_are_counted() {
+    let folder = folder(&[("many.imp", &"surface s: x + = 1\n".repeat(1000))]);
+    let said = fail(folder.path(), &["check", "many.imp"]);
+    assert!(said.contains("more errors are not shown") && said.matches("error[").count() <= 101, "{said}");
 }
 
 /// Definitions each of which uses the one before twice.
@@ -289,6 +295,23 @@ fn every_stage_is_emitted() {
     let output = run(folder.path(), &["emit", "ast", "bad.imp"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(!output.stdout.is_empty() && !output.stderr.is_empty(), "{output:?}");
+}
+
+#[test]
+fn certificates_are_verified() {
+    let folder = folder(&[("ball.imp", "param r = 1 in [0.5, 2]\nx^2 + y^2 + z^2 = r\n"), ("egg.imp", SPHERE)]);
+    let render = |set, name| ["render", "ball.imp", "--size", "48", "--set", set, "--certificate", name];
+    succeed(folder.path(), &render("r=0.7", "ball.proof"));
+    let said = succeed(folder.path(), &["verify", "ball.imp", "ball.proof", "--set", "r=0.7"]);
+    assert!(said.starts_with("verified: ") && !said.contains(" 0 hits"), "{said}");
+    // Of another scene, of other parameters, damaged, none at all.
+    fail(folder.path(), &["verify", "egg.imp", "ball.proof"]);
+    fail(folder.path(), &["verify", "ball.imp", "ball.proof", "--set", "r=0.8"]);
+    let bytes = fs::read(folder.path().join("ball.proof")).unwrap();
+    fs::write(folder.path().join("half.proof"), &bytes[..bytes.len() / 2]).unwrap();
+    fail(folder.path(), &["verify", "ball.imp", "half.proof", "--set", "r=0.7"]);
+    fail(folder.path(), &["verify", "ball.imp", "ball.imp"]);
+    fail(folder.path(), &["verify", "ball.imp", "no.proof"]);
 }
 
 #[test]

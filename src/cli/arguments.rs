@@ -37,6 +37,9 @@ pub enum Command {
         /// What `imp render FILE --certificate OUT` wrote.
         #[arg(value_name = "OUT")]
         certificate: PathBuf,
+        /// Values of parameters, as they were set for the picture. Repeatable.
+        #[arg(long = "set", value_name = "NAME=VALUE", value_parser = values::setting)]
+        settings: Vec<Override>,
     },
     /// Say which kernels, rays and effects a picture will run, and why.
     Explain {

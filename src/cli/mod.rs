@@ -45,6 +45,7 @@ pub fn main() -> ExitCode {
 fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Render(arguments) => render::render(arguments),
+        Command::Verify { file, certificate, settings } => render::verify(file, certificate, settings),
         Command::Explain { file, picture } => render::explain(file, picture),
         Command::Check { files } => text::check(files),
         Command::Fmt { files, check } => text::format(files, *check),

@@ -22,10 +22,13 @@ use crate::cli::text;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::SourceMap;
 use crate::diagnostic::code;
+use crate::interpret::Interpreter;
 use crate::interval::Interval;
 use crate::program::TIME;
 use crate::program::scene::Parameter;
 use crate::program::scene::Scene;
+use crate::render;
+use crate::render::Certificate;
 use crate::render::Control;
 use crate::render::Layers;
 use crate::render::Options;
@@ -35,6 +38,7 @@ use crate::render::Stats;
 use crate::render::image;
 use crate::render::image::Layer;
 use crate::session;
+use crate::session::Override;
 
 /// The name that stands for stdout.
 const STDOUT: &str = "-";
@@ -57,15 +61,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
             None => scene.parameters.clone(),
         };
         let frame = arguments.frames.as_ref().map(|_| number);
-        let (bar, start) = (progress_bar(frame), Instant::now());
-        let watch = |done: usize, total: usize| {
-            if start.elapsed() > PATIENCE {
-                bar.set_length(total as u64);
-                bar.set_position(done as u64);
-            }
-        };
-        let picture = renderer.render(&parameters, &Control::new(Some(&watch), None)).map_err(fail)?;
-        bar.finish_and_clear();
+        let picture = watched(frame, |control| renderer.render(&parameters, control)).map_err(fail)?;
         let name = |path: &Path| match arguments.frames {
             Some(_) => files::numbered(path, number, numbers.end - 1),
             None => path.to_path_buf(),
@@ -87,6 +83,20 @@ pub fn explain(file: &PathBuf, picture: &PictureArguments) -> Result<(), Failure
         Ok(renderer) => files::print(renderer.plan().to_string().as_bytes()),
         Err(diagnostic) => Err(Failure::new(artefact.sources, vec![diagnostic])),
     }
+}
+
+/// `imp verify`: replays a certificate with the reference interpreter alone.
+pub fn verify(file: &PathBuf, certificate: &Path, settings: &[Override]) -> Result<(), Failure> {
+    let (artefact, scene) = text::scene(file, settings)?;
+    let certificate = Certificate::from_bytes(&session::bytes(certificate)?)?;
+    let report = watched(None, |control| render::verify(&scene, &certificate, &Interpreter, control));
+    let report = report.map_err(|diagnostic| Failure::new(artefact.sources, vec![diagnostic]))?;
+    let render::Report { counts, cells, evaluations } = report;
+    let text = format!(
+        "verified: {} hits and {} misses proved, {} pixels unknown; {cells} refuted cells, {evaluations} evaluations\n",
+        counts.proved, counts.misses, counts.unknown,
+    );
+    files::print(text.as_bytes())
 }
 
 fn options(arguments: &RenderArguments) -> Options {
@@ -219,13 +229,22 @@ fn summary(path: &Path, picture: &Picture) -> String {
     )
 }
 
-/// A progress bar on stderr if that is a terminal, else one that draws nothing.
-fn progress_bar(frame: Option<u64>) -> ProgressBar {
+/// Does work under a progress bar on stderr if that is a terminal; elsewhere nothing is drawn.
+fn watched<T>(frame: Option<u64>, work: impl FnOnce(&Control) -> T) -> T {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{prefix}{wide_bar} {pos}/{len} tiles, {eta} to go");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     if let Some(frame) = frame {
         bar.set_prefix(format!("frame {frame} "));
     }
-    bar
+    let start = Instant::now();
+    let watch = |done: usize, total: usize| {
+        if start.elapsed() > PATIENCE {
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        }
+    };
+    let result = work(&Control::new(Some(&watch), None));
+    bar.finish_and_clear();
+    result
 }

@@ -60,6 +60,8 @@ const LONG_LINE: usize = 240;
 /// Bytes shown on either side of the label on a longer line.
 const WINDOW: usize = 60;
 const ELLIPSIS: &str = "...";
+/// Bytes shown of a message that quotes the source; names may be megabytes long too.
+const LONG_MESSAGE: usize = 400;
 
 impl<'m> Views<'m> {
     fn new(map: &'m SourceMap, diagnostic: &Diagnostic) -> Self {
@@ -83,13 +85,13 @@ impl<'m> Views<'m> {
         let labels = diagnostic.labels.iter().enumerate().filter_map(|(i, label)| {
             let range = self.view(label.span.file).ok()?.range(label.span);
             let style = if i == 0 { codespan::LabelStyle::Primary } else { codespan::LabelStyle::Secondary };
-            Some(codespan::Label::new(style, label.span.file, range).with_message(harmless(&label.text)))
+            Some(codespan::Label::new(style, label.span.file, range).with_message(clipped(&label.text)))
         });
         codespan::Diagnostic::new(severity)
             .with_code(diagnostic.code)
-            .with_message(harmless(&diagnostic.title))
+            .with_message(clipped(&diagnostic.title))
             .with_labels(labels.collect())
-            .with_notes(diagnostic.help.iter().map(|h| format!("help: {}", harmless(h))).collect())
+            .with_notes(diagnostic.help.iter().map(|h| format!("help: {}", clipped(h))).collect())
     }
 
     fn view(&self, file: FileId) -> Result<&View<'m>, Error> {
@@ -200,6 +202,16 @@ fn harmless(text: &str) -> Cow<'_, str> {
     if text.chars().any(|c| stand_in(c) != c) { text.chars().map(stand_in).collect() } else { text.into() }
 }
 
+/// A message made harmless, without the middle of what is too long in it.
+fn clipped(message: &str) -> Cow<'_, str> {
+    let message = harmless(message);
+    if message.len() <= LONG_MESSAGE {
+        return message;
+    }
+    let (head, tail) = (floor(&message, LONG_MESSAGE / 2), floor(&message, message.len() - LONG_MESSAGE / 4));
+    format!("{}{ELLIPSIS}{}", &message[..head], &message[tail..]).into()
+}
+
 /// The line, counted from 0, that holds the byte.
 fn line_of(starts: &[usize], byte: usize) -> usize {
     starts.partition_point(|&start| start <= byte).saturating_sub(1)
@@ -247,6 +259,13 @@ mod tests {
         let caret = shown.lines().find(|l| l.contains('^')).and_then(|l| l.chars().position(|c| c == '^'));
         let at = shown.lines().find(|l| l.contains('@')).and_then(|l| l.chars().position(|c| c == '@'));
         assert_eq!(caret, at, "{shown}");
+    }
+
+    #[test]
+    fn long_messages_lose_their_middle() {
+        let long = format!("unknown name `{}`", "é".repeat(100_000));
+        assert!(clipped(&long).len() < 2 * LONG_MESSAGE && clipped(&long).ends_with("é`"));
+        assert_eq!(clipped("short"), "short");
     }
 
     #[test]

@@ -13,15 +13,25 @@ use crate::diagnostic::did_you_mean;
 use crate::program::FileSystem;
 use crate::program::Importer;
 
-/// Files beyond this are refused: what is meant is another file, or a device that never ends.
-pub const MAX_BYTES: u64 = 256 << 20;
+/// Files beyond this are refused: what is meant is another file, or a device that never ends. A certificate of a large
+/// picture has tens of megabytes.
+pub const MAX_BYTES: u64 = 1 << 30;
 
 /// Adds a file to the sources.
 ///
 /// # Errors
-/// If the file is missing (with the similar names of its folder), is a folder, is too large, cannot be read or is not
-/// text.
+/// As [`bytes`], and if it is not text.
 pub(super) fn load(sources: &mut SourceMap, path: &Path) -> Result<FileId, Diagnostic> {
+    let bytes = bytes(path)?;
+    let (file, fault) = sources.add_bytes(path.display().to_string(), &bytes);
+    fault.map_or(Ok(file), Err)
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+/// If the file is missing (with the similar names of its folder), is a folder, is too large or cannot be read.
+pub fn bytes(path: &Path) -> Result<Vec<u8>, Diagnostic> {
     let name = path.display().to_string();
     if path.is_dir() {
         return Err(folder(path, &name));
@@ -29,15 +39,12 @@ pub(super) fn load(sources: &mut SourceMap, path: &Path) -> Result<FileId, Diagn
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
     match read {
-        Err(error) => return Err(unreadable(path, &name, &error)),
+        Err(error) => Err(unreadable(path, &name, &error)),
         Ok(_) if bytes.len() as u64 > MAX_BYTES => {
-            let title = format!("`{name}` is larger than {} MiB", MAX_BYTES >> 20);
-            return Err(Diagnostic::error(code::FILE_TOO_LARGE, title).help("is it a scene?"));
+            Err(Diagnostic::error(code::FILE_TOO_LARGE, format!("`{name}` is larger than {} MiB", MAX_BYTES >> 20)))
         }
-        Ok(_) => {}
+        Ok(_) => Ok(bytes),
     }
-    let (file, fault) = sources.add_bytes(name, &bytes);
-    fault.map_or(Ok(file), Err)
 }
 
 fn folder(path: &Path, name: &str) -> Diagnostic {

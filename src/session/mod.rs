@@ -30,6 +30,7 @@ use crate::syntax;
 use crate::syntax::ast::Module;
 
 pub use crate::session::load::MAX_BYTES;
+pub use crate::session::load::bytes;
 pub use crate::session::stages::Emission;
 pub use crate::session::stages::Stage;
 
