@@ -18,6 +18,7 @@ mod outcome;
 mod picture;
 mod plan;
 mod plane;
+mod poles;
 mod programs;
 mod shade;
 mod solve;
