@@ -44,6 +44,11 @@ impl<T: Real> Batch<T> {
         self.outputs.len() / self.output_slots * T::LANES
     }
 
+    /// Output slots of a lane.
+    pub fn output_slots(&self) -> usize {
+        self.output_slots
+    }
+
     /// Writes one input slot of a lane.
     #[inline]
     pub fn set(&mut self, lane: usize, slot: usize, value: T) {

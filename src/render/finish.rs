@@ -29,6 +29,9 @@ use crate::render::outcome::Surface;
 /// about thirty; a ray that grazes a surface needs a few times that.
 const BUDGET: u32 = 192;
 
+/// How often a ray that was given up without anything to draw goes on behind, each time a longer way.
+const RESTS: u8 = 4;
+
 /// Levels below the reported depth to which undecided pieces are halved in the hope of refuting them.
 const EXTRA_DEPTH: u8 = 10;
 
@@ -81,6 +84,7 @@ struct Walker {
     /// A proved crossing that could not yet be narrowed down.
     fallback: Option<[f64; 2]>,
     spent: u32,
+    rests: u8,
 }
 
 /// What the kernels say of a piece.
@@ -97,6 +101,8 @@ struct Evidence {
     growth: u32,
     condition: bool,
     no_condition: bool,
+    /// The numerator of a field with poles has no zero.
+    no_zero: bool,
     test: Test,
 }
 
@@ -194,6 +200,7 @@ impl<'a> Finisher<'a> {
             open: None,
             fallback: None,
             spent: outcome.spent,
+            rests: outcome.rests,
         };
         if p > exit[1] {
             return None;
@@ -249,7 +256,7 @@ impl<'a> Finisher<'a> {
             } else {
                 self.decide(walker, pieces[index], signs[index], outcome, cover)
             };
-            outcome.spent = walker.spent;
+            (outcome.spent, outcome.rests) = (walker.spent, walker.rests);
             steps.push(step);
         }
         steps
@@ -280,6 +287,8 @@ impl<'a> Finisher<'a> {
         let (centred, growth) =
             if continuous { (sign(self.piece.bits(lane, 4)), sign(self.piece.bits(lane, 3))) } else { (0, 0) };
         let condition = if self.context.condition { self.piece.bits(lane, 5) } else { !verdict::REFUTED };
+        let numerator = 5 + usize::from(self.context.condition);
+        let no_zero = numerator < self.piece.output_slots() && sign(self.piece.bits(lane, numerator)) != 0;
         Evidence {
             sign: if natural != 0 { natural } else { centred },
             empty: bits & verdict::EMPTY != 0,
@@ -289,7 +298,12 @@ impl<'a> Finisher<'a> {
             growth,
             condition: !self.context.condition || proves_condition(condition),
             no_condition: refutes_condition(condition),
-            test: if natural != 0 || centred == 0 { Test::Natural } else { Test::Centred },
+            no_zero,
+            test: match (natural, centred) {
+                (0, 0) if no_zero => Test::Numerator,
+                (0, 1..) => Test::Centred,
+                _ => Test::Natural,
+            },
         }
     }
 
@@ -339,7 +353,7 @@ impl<'a> Finisher<'a> {
     }
 
     fn is_refuted(&self, piece: &Evidence) -> bool {
-        piece.empty || piece.no_condition || piece.sign & self.context.refuting() != 0
+        piece.empty || piece.no_condition || piece.no_zero || piece.sign & self.context.refuting() != 0
     }
 
     fn decide(
@@ -409,10 +423,8 @@ impl<'a> Finisher<'a> {
             walker.fallback = Some(bracket);
         }
         if walker.spent >= BUDGET {
-            match walker.fallback {
-                Some(bracket) => outcome.hit(bracket, walker.p, Surface::Field),
-                None => outcome.undecided([stretch.start, walker.q], stretch.bounded || self.poles),
-            }
+            let Some(bracket) = walker.fallback else { return self.give_up(walker, stretch, outcome) };
+            outcome.hit(bracket, walker.p, Surface::Field);
             return Step::Done;
         }
         if inner && walker.depth < self.deepest {
@@ -428,6 +440,21 @@ impl<'a> Finisher<'a> {
         walker.open = Some(stretch);
         (walker.sign, walker.unconditioned) = (after, false);
         self.advance(walker, outcome)
+    }
+
+    /// The ray has cost too much. Where there is nothing to draw, it goes on farther behind to find something.
+    fn give_up(&self, walker: &mut Walker, stretch: Stretch, outcome: &mut Outcome) -> Step {
+        let drawn = stretch.bounded || self.poles;
+        outcome.undecided([stretch.start, walker.q], drawn);
+        if drawn || walker.rests == RESTS {
+            return Step::Done;
+        }
+        walker.rests += 1;
+        let depth = walker.home.saturating_sub(2 * walker.rests);
+        walker.k = (walker.k >> (walker.depth - depth)) + 1;
+        (walker.depth, walker.home, walker.sign, walker.spent) = (depth, depth, 0, 0);
+        walker.p = self.context.grid.cut(walker.k, depth);
+        if walker.p < walker.exit[1] { Step::Resume } else { Step::Done }
     }
 
     /// Whether signs before and after a stretch make it a crossing that is drawn: any for a zero set, from outside to

@@ -97,6 +97,8 @@ pub enum Test {
     Natural,
     /// The centred form excludes 0 where the field is continuous.
     Centred,
+    /// The field's numerator excludes 0, near a pole.
+    Numerator,
     /// The field is monotone, and its ends have one sign or the pixel's bracket follows.
     Monotone,
 }
@@ -442,7 +444,7 @@ impl<'a, T: Real> March<'a, T> {
     }
 
     fn slope_step(&mut self) {
-        let survivors = std::mem::take(&mut self.survivors);
+        let mut survivors = std::mem::take(&mut self.survivors);
         for (lane, item) in survivors.iter().enumerate() {
             for (slot, &end) in item.hull.iter().enumerate() {
                 self.slope.set(lane, slot, end);
@@ -460,8 +462,15 @@ impl<'a, T: Real> March<'a, T> {
         for (lane, &item) in survivors.iter().enumerate() {
             let condition = if self.context.condition { self.slope.bits(lane, 4) } else { !0 };
             let bits = [0, 1, 2, 3].map(|slot| self.slope.bits(lane, slot));
-            self.settle(item, bits, condition);
+            let numerator = 4 + usize::from(self.context.condition);
+            if numerator < self.slope.output_slots() && sign(self.slope.bits(lane, numerator)) != 0 {
+                self.refute(item, 0, Test::Numerator);
+            } else {
+                self.settle(item, bits, condition);
+            }
         }
+        survivors.clear();
+        self.survivors = survivors;
     }
 
     /// Acts on the verdicts of the field, its centred form, its slope and its end value over an item's cell.

@@ -19,6 +19,7 @@ mod outcome;
 mod picture;
 mod plan;
 mod plane;
+mod poles;
 mod programs;
 mod shade;
 mod solve;

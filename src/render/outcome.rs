@@ -17,6 +17,8 @@ pub struct Outcome {
     pub surface: Surface,
     /// Cells that single rays have tried so far.
     pub spent: u32,
+    /// How often it was given up and taken up again behind.
+    pub rests: u8,
 }
 
 /// What is drawn.
@@ -42,6 +44,7 @@ impl Outcome {
         t: f64::INFINITY,
         surface: Surface::Field,
         spent: 0,
+        rests: 0,
     };
 
     /// Records a bracket that holds a proved crossing. What was undecided before it stays so.

@@ -38,20 +38,21 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Adds a kernel.
-    pub fn kernel(
+    /// Adds a kernel; hands it through.
+    pub fn kernel<K>(
         &mut self,
         shape: &Shape,
         name: &'static str,
         precision: Precision,
-        spec: &Spec,
+        (spec, kernel): (Spec, K),
         reason: &'static str,
-    ) {
+    ) -> K {
         let roots: Vec<Value> = spec.outputs.iter().map(|output| output.value()).collect();
         let needed = spec.graph.reachable(&roots);
         let operations = spec.graph.iter().filter(|(v, node)| needed[v.index()] && node.op.arity() > 0).count();
         let (shape, arithmetic) = (shape.name.clone(), spec.arithmetic);
         self.kernels.push(Planned { shape, name, precision, arithmetic, operations, reason });
+        kernel
     }
 
     /// Notes on what all of a picture's kernels have in common.

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::derive::Precision;
 use crate::derive::Rounding;
+use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::interval::Interval;
@@ -132,15 +133,18 @@ impl Plane {
             plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
             let rounding = options.rounding;
             let orders = Orders { scene, shape, reach: None, rounding, arithmetic: chosen };
-            let spec = orders.region();
-            plan.kernel(shape, "box", Precision::Double, &spec, "decides pixels and blocks of them");
-            let region = Compiled::new(backend, &spec)?;
-            let gradient = if options.layers.color {
-                let spec = orders.gradient();
-                plan.kernel(shape, "gradient", Precision::Double, &spec, "gives strokes their width");
-                Some(Compiled::new(backend, &spec)?)
-            } else {
-                None
+            let compiled = |spec: Spec| Compiled::new(backend, &spec).map(|kernel| (spec, kernel));
+            let (double, region) = (Precision::Double, compiled(orders.region())?);
+            let region = plan.kernel(shape, "box", double, region, "decides pixels and blocks of them");
+            let gradient = match options.layers.color {
+                true => Some(plan.kernel(
+                    shape,
+                    "gradient",
+                    double,
+                    compiled(orders.gradient())?,
+                    "gives strokes their width",
+                )),
+                false => None,
             };
             kernels.push(ShapeKernels { region, gradient });
         }
@@ -296,7 +300,8 @@ impl<'a> Decider<'a> {
                     Finding::Outside => {}
                     Finding::Inside => {
                         let last = (self.raster.x.len() as u32 - 2, self.raster.y.len() as u32 - 2);
-                        for (column, row) in square.places().filter(|&(column, row)| column <= last.0 && row <= last.1) {
+                        for (column, row) in square.places().filter(|&(column, row)| column <= last.0 && row <= last.1)
+                        {
                             // The square may reach beyond the domain.
                             if self.raster.clip(column, row, 1).is_some() {
                                 places[((row - y) * BLOCK + column - x) as usize] = Place::Inside;
@@ -391,7 +396,9 @@ impl<'a> Decider<'a> {
         let bits = self.batch.bits(lane, 0);
         let condition = if self.condition { self.batch.bits(lane, 1) } else { !verdict::REFUTED | verdict::POSITIVE };
         let sound = bits & verdict::CONTINUOUS != 0 && proves_condition(condition);
-        if bits & verdict::EMPTY != 0 || refutes_condition(condition) {
+        let numerator = 1 + usize::from(self.condition);
+        let no_zero = numerator < self.batch.output_slots() && sign(self.batch.bits(lane, numerator)) != 0;
+        if bits & verdict::EMPTY != 0 || no_zero || refutes_condition(condition) {
             return Finding::Outside;
         }
         match (sign(bits), self.solid) {

@@ -24,7 +24,9 @@ use crate::program::scene::Parameter;
 use crate::program::scene::Projection;
 use crate::program::scene::Scene;
 use crate::program::scene::Shape;
+use crate::program::scene::ShapeKind;
 use crate::render::batch::Program;
+use crate::render::poles::numerator;
 
 /// The inputs of centred forms and of values at a cell's end.
 const CENTRE: &str = "ray_m";
@@ -119,7 +121,8 @@ impl Orders<'_> {
     }
 
     /// Box, centre and end in; the verdict of the field, refutations of its centred form, its slope and its value at the
-    /// end, and the condition's verdict out: what settles cells with their derivative.
+    /// end, the condition's verdict, and for zero sets with poles the refutation of the numerator out: what settles cells
+    /// with their derivative.
     pub fn slope(&self) -> Spec {
         self.along_ray(&[CENTRE, END], self.arithmetic, |graph, formulas| {
             let slope = derive::derivative(graph, formulas.field, formulas.t);
@@ -132,8 +135,8 @@ impl Orders<'_> {
         })
     }
 
-    /// Box and centre in; the enclosure of the field, refutations of its slope and its centred form, and the condition's
-    /// verdict out.
+    /// Box and centre in; the enclosure of the field, refutations of its slope and its centred form, the condition's
+    /// verdict, and for zero sets with poles the refutation of the numerator out.
     pub fn piece(&self) -> Spec {
         self.along_ray(&[CENTRE], Arithmetic::Interval, |graph, formulas| {
             let slope = derive::derivative(graph, formulas.field, formulas.t);
@@ -162,7 +165,8 @@ impl Orders<'_> {
         self.spec(graph, self.coordinates().to_vec(), outputs, Vec::new(), Arithmetic::Point)
     }
 
-    /// Box x, y(, z) in; verdicts of field and condition out: what decides pixels of a plane scene.
+    /// Box x, y(, z) in; verdicts of field and condition, and for zero sets with poles the refutation of the numerator out:
+    /// what decides pixels of a plane scene.
     pub fn region(&self) -> Spec {
         let mut graph = Graph::new();
         let coordinates: Vec<Value> = self.coordinates().iter().map(|name| graph.var(name)).collect();
@@ -171,8 +175,18 @@ impl Orders<'_> {
         let roots = graph.import(&self.scene.graph, &roots, &HashMap::new());
         let mut outputs = vec![Output::Verdict(roots[0])];
         outputs.extend(roots.get(1).map(|&condition| Output::Verdict(less_half(&mut graph, condition))));
+        outputs.extend(self.numerator(&mut graph, roots[0]));
         let domain = coordinates.into_iter().zip(self.scene.domain.iter().copied()).collect();
         self.spec(graph, self.coordinates().to_vec(), outputs, domain, self.arithmetic)
+    }
+
+    /// For zero sets with poles: the refutation of the numerator.
+    fn numerator(&self, graph: &mut Graph, field: Value) -> Option<Output> {
+        match self.shape.kind {
+            ShapeKind::Equation => numerator(graph, field).map(Output::Refutation),
+            // The boundary of a region may run along a pole.
+            ShapeKind::Region => None,
+        }
     }
 
     fn coordinates(&self) -> &'static [&'static str] {
@@ -192,6 +206,9 @@ impl Orders<'_> {
         let mut outputs = outputs(&mut ray.graph, Formulas { field: ray.roots[0], t: ray.t });
         if let (Some(&condition), false) = (ray.roots.get(1), arithmetic == Arithmetic::Point) {
             outputs.push(Output::Verdict(less_half(&mut ray.graph, condition)));
+        }
+        if extra.contains(&CENTRE) {
+            outputs.extend(self.numerator(&mut ray.graph, ray.roots[0]));
         }
         let domain = ray.coordinates.into_iter().zip(self.scene.domain.iter().copied()).collect();
         let mut lanes = reach.varying().to_vec();

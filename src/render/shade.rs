@@ -222,11 +222,16 @@ impl Shading {
                 continue;
             }
             let mirrored = 2.0 * cosine * normal - towards;
-            let gloss = material.specular * mirrored.dot(view).max(0.0).powf(material.shininess);
+            let gloss = material.specular * power(mirrored.dot(view).max(0.0), material.shininess);
             sum += DVec3::from(light.color) * (material.diffuse * cosine * *base + DVec3::splat(gloss));
         }
         encode(&self.codes, sum)
     }
+}
+
+/// x^y, quickly for the whole y that materials usually have.
+fn power(x: f64, y: f64) -> f64 {
+    if y.fract() == 0.0 && y.abs() < 1000.0 { x.powi(y as i32) } else { x.powf(y) }
 }
 
 fn encode(codes: &[u8], color: DVec3) -> [u8; 3] {

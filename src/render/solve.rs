@@ -18,11 +18,9 @@ use crate::render::options::Stop;
 /// two or three steps nearly always reach the last bits that matter; the others are for silhouettes.
 const STEPS: usize = 10;
 
-/// Steps that every pixel takes; then only those that still move.
-const COMMON_STEPS: usize = 2;
-
-/// A step shorter than this share of the reported cell ends Newton's method.
-const SETTLED: f64 = 1.0 / 64.0;
+/// The step to come, as quadratic convergence foretells it, below which Newton's method ends: this share of the reported
+/// cell.
+const SETTLED: f64 = 1.0 / 1024.0;
 
 /// How often a subcell is moved after a sign contradicted it: to a neighbour twice, then by bisection.
 const MOVES: usize = 40;
@@ -46,6 +44,9 @@ pub struct Solver<'a> {
     depth: u8,
     root: Batch<f64>,
     ends: Batch<f64>,
+    trials: Vec<Trial>,
+    /// The trials in the lanes of the running batch.
+    active: Vec<usize>,
 }
 
 /// A pixel on its way to its zero.
@@ -57,6 +58,8 @@ struct Trial {
     hi: f64,
     t: f64,
     slope: f64,
+    /// Its last step, to foretell the next.
+    step: f64,
     moving: bool,
     depth: u8,
     cell: u64,
@@ -67,12 +70,13 @@ struct Trial {
     before: Option<f64>,
     after: Option<f64>,
     open: bool,
+    settlement: Settlement,
 }
 
 impl<'a> Solver<'a> {
     pub fn new(context: Context<'a>, stop: Stop, depth: u8, root: &Program<f64>, ends: &Program<f64>) -> Self {
         let (root, ends) = (Batch::new(root, GROUPS), Batch::new(ends, 2 * GROUPS));
-        Self { context, stop, depth, root, ends }
+        Self { context, stop, depth, root, ends, trials: Vec::new(), active: Vec::new() }
     }
 
     /// Evaluations by the point kernel and by the kernel of signs.
@@ -83,12 +87,15 @@ impl<'a> Solver<'a> {
     /// Decides every job, in order.
     pub fn run(&mut self, jobs: &[Settled], mut decide: impl FnMut(&Settled, Settlement)) {
         for jobs in jobs.chunks(self.root.capacity()) {
-            let mut trials: Vec<Trial> = jobs.iter().map(|job| self.begin(job)).collect();
+            let mut trials = std::mem::take(&mut self.trials);
+            trials.clear();
+            trials.extend(jobs.iter().map(|job| self.begin(job)));
             self.newton(jobs, &mut trials);
-            let settlements = self.prove(jobs, &mut trials);
-            for (job, settlement) in jobs.iter().zip(settlements) {
-                decide(job, settlement);
+            self.prove(jobs, &mut trials);
+            for (job, trial) in jobs.iter().zip(&trials) {
+                decide(job, trial.settlement);
             }
+            self.trials = trials;
         }
     }
 
@@ -100,6 +107,7 @@ impl<'a> Solver<'a> {
             hi: job.b,
             t: 0.5 * (job.a + job.b),
             slope: 0.0,
+            step: job.b - job.a,
             moving: true,
             depth: self.depth,
             cell: 0,
@@ -108,26 +116,28 @@ impl<'a> Solver<'a> {
             before: job.crossing.then_some(job.a),
             after: job.crossing.then_some(job.b),
             open: true,
+            settlement: Settlement::Open,
         }
     }
 
     /// Newton's method, kept inside a bracket that each value's sign tightens. Nothing is proved here.
     fn newton(&mut self, jobs: &[Settled], trials: &mut [Trial]) {
         let settled = SETTLED * self.context.grid.unit(self.depth);
-        for step in 0..STEPS {
-            let active: Vec<usize> =
-                (0..trials.len()).filter(|&index| step < COMMON_STEPS || trials[index].moving).collect();
-            if active.is_empty() {
-                return;
-            }
-            for (lane, &index) in active.iter().enumerate() {
-                for (slot, &component) in trials[index].ray.iter().enumerate() {
+        for _ in 0..STEPS {
+            self.active.clear();
+            for (index, trial) in trials.iter().enumerate().filter(|(_, trial)| trial.moving) {
+                let lane = self.active.len();
+                for (slot, &component) in trial.ray.iter().enumerate() {
                     self.root.set(lane, slot, component);
                 }
-                self.root.set(lane, 3, trials[index].t);
+                self.root.set(lane, 3, trial.t);
+                self.active.push(index);
             }
-            self.root.run(active.len());
-            for (lane, &index) in active.iter().enumerate() {
+            if self.active.is_empty() {
+                return;
+            }
+            self.root.run(self.active.len());
+            for (lane, &index) in self.active.iter().enumerate() {
                 let (trial, job) = (&mut trials[index], &jobs[index]);
                 let (value, slope) = (self.root.get(lane, 0), self.root.get(lane, 1));
                 if (value < 0.0) == (job.growth == verdict::POSITIVE) {
@@ -138,15 +148,16 @@ impl<'a> Solver<'a> {
                 let next = trial.t - value / slope;
                 let next = if next.is_finite() { next } else { 0.5 * (trial.lo + trial.hi) };
                 let next = next.clamp(trial.lo, trial.hi);
-                trial.moving = (next - trial.t).abs() > settled;
-                (trial.t, trial.slope) = (next, slope);
+                let step = (next - trial.t).abs();
+                // Far from the zero the first steps are no guide, so a step counts only if it is much shorter than the last.
+                trial.moving = step > settled && (step > 0.25 * trial.step || step * step > settled * trial.step);
+                (trial.t, trial.slope, trial.step) = (next, slope, step);
             }
         }
     }
 
     /// Proves the sign at both ends of the subcell of each trial, moving it where a sign says so.
-    fn prove(&mut self, jobs: &[Settled], trials: &mut [Trial]) -> Vec<Settlement> {
-        let mut settlements = vec![Settlement::Open; jobs.len()];
+    fn prove(&mut self, jobs: &[Settled], trials: &mut [Trial]) {
         for trial in trials.iter_mut() {
             if let Stop::Tolerance(tolerance) = self.stop {
                 // The field varies by about |slope| times the length; what is reported is proved in any case.
@@ -155,13 +166,11 @@ impl<'a> Solver<'a> {
             trial.cell = self.context.grid.cell(trial.t, trial.depth);
         }
         for step in 0..MOVES {
-            let open: Vec<usize> = (0..trials.len()).filter(|&index| trials[index].open).collect();
-            if open.is_empty() {
-                break;
-            }
-            for (pair, &index) in open.iter().enumerate() {
-                let (trial, job) = (&mut trials[index], &jobs[index]);
-                let grid = self.context.grid;
+            self.active.clear();
+            let grid = self.context.grid;
+            for (index, (trial, job)) in trials.iter_mut().zip(jobs).enumerate().filter(|(_, (trial, _))| trial.open) {
+                let pair = self.active.len();
+                self.active.push(index);
                 trial.start = grid.cut(trial.cell, trial.depth).clamp(job.a, job.b);
                 trial.end = grid.cut(trial.cell + 1, trial.depth).clamp(job.a, job.b);
                 for (lane, t) in [(2 * pair, trial.start), (2 * pair + 1, trial.end)] {
@@ -171,18 +180,21 @@ impl<'a> Solver<'a> {
                     self.ends.set_range(lane, 3, t, t);
                 }
             }
-            self.ends.run(2 * open.len());
-            for (pair, &index) in open.iter().enumerate() {
+            if self.active.is_empty() {
+                return;
+            }
+            self.ends.run(2 * self.active.len());
+            for (pair, &index) in self.active.iter().enumerate() {
                 let signs = [sign(self.ends.bits(2 * pair, 0)), sign(self.ends.bits(2 * pair + 1, 0))];
-                settlements[index] = self.judge(&jobs[index], &mut trials[index], signs, step);
+                let trial = &mut trials[index];
+                trial.settlement = self.judge(&jobs[index], trial, signs, step);
             }
         }
-        for (trial, settlement) in trials.iter().zip(&mut settlements) {
+        for trial in trials.iter_mut() {
             if let (true, Some(start), Some(end)) = (trial.open, trial.before, trial.after) {
-                *settlement = Settlement::Hit { bracket: [start, end], t: trial.t.clamp(start, end) };
+                trial.settlement = Settlement::Hit { bracket: [start, end], t: trial.t.clamp(start, end) };
             }
         }
-        settlements
     }
 
     /// What the signs at the ends of a trial's subcell prove; if nothing yet, the trial stays open and has moved.

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::derive::Precision;
 use crate::derive::Rounding;
+use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::kernel::Backend;
@@ -25,6 +26,7 @@ use crate::render::extent::extent;
 use crate::render::grid::Grid;
 use crate::render::march::Context;
 use crate::render::march::Refuted;
+use crate::render::march::pixel;
 use crate::render::options::Options;
 use crate::render::options::Stop;
 use crate::render::outcome::Outcome;
@@ -198,39 +200,43 @@ impl<T: Format> ShapeKernels<T> {
         plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: options.rounding, arithmetic: beams };
-        let double = Precision::Double;
-
-        let spec = orders.beam();
-        plan.kernel(shape, "beam", T::PRECISION, &spec, "refutes cells of beams");
-        let plain = Compiled::new(backend, &spec)?;
-        let spec = orders.slope();
-        plan.kernel(shape, "slope", T::PRECISION, &spec, "settles cells in which the field is monotone along rays");
-        let slope = Compiled::new(backend, &spec)?;
-        let spec = orders.ends();
-        plan.kernel(shape, "ends", double, &spec, "proves the signs at the ends of brackets");
-        let ends = Compiled::new(backend, &spec)?;
-        let spec = orders.piece();
-        plan.kernel(shape, "piece", double, &spec, "decides on single rays what beams leave open");
-        let piece = Compiled::new(backend, &spec)?;
-        let spec = orders.root();
-        plan.kernel(shape, "root", double, &spec, "finds hits to shade by Newton's method");
-        let root = Compiled::new(backend, &spec)?;
-        let face = match shape.kind {
-            ShapeKind::Equation => None,
-            ShapeKind::Region => {
-                let spec = orders.face();
-                plan.kernel(shape, "face", double, &spec, "decides where the domain's faces cut a solid");
-                Some(Compiled::new(backend, &spec)?)
-            }
-        };
-        let gradient = if wants_normals(scene, options) {
-            let spec = orders.gradient();
-            plan.kernel(shape, "gradient", double, &spec, "gives the normals that shading or the normal layer needs");
-            Some(Compiled::new(backend, &spec)?)
-        } else {
-            None
-        };
-        Ok(Self { plain, slope, ends, piece, face, root, gradient })
+        let solid = shape.kind == ShapeKind::Region;
+        let normals = wants_normals(scene, options);
+        // Each kernel takes longer to compile than a thread to wake.
+        let single = |spec: Spec| Compiled::<T>::new(backend, &spec).map(|kernel| (spec, kernel));
+        let double = |spec: Spec| Compiled::<f64>::new(backend, &spec).map(|kernel| (spec, kernel));
+        let ((plain, slope), ((ends, piece), (root, (face, gradient)))) = rayon::join(
+            || rayon::join(|| single(orders.beam()), || single(orders.slope())),
+            || {
+                rayon::join(
+                    || rayon::join(|| double(orders.ends()), || double(orders.piece())),
+                    || {
+                        let rest = || {
+                            let face = solid.then(|| double(orders.face())).transpose();
+                            (face, normals.then(|| double(orders.gradient())).transpose())
+                        };
+                        rayon::join(|| double(orders.root()), rest)
+                    },
+                )
+            },
+        );
+        let format = T::PRECISION;
+        let (plain, slope) = (
+            plan.kernel(shape, "beam", format, plain?, "refutes cells of beams"),
+            plan.kernel(shape, "slope", format, slope?, "settles cells in which the field is monotone along rays"),
+        );
+        let format = Precision::Double;
+        Ok(Self {
+            plain,
+            slope,
+            ends: plan.kernel(shape, "ends", format, ends?, "proves the signs at the ends of brackets"),
+            piece: plan.kernel(shape, "piece", format, piece?, "decides on single rays what beams leave open"),
+            root: plan.kernel(shape, "root", format, root?, "finds hits to shade by Newton's method"),
+            face: face?.map(|face| plan.kernel(shape, "face", format, face, "decides where the domain cuts a solid")),
+            gradient: gradient?.map(|gradient| {
+                plan.kernel(shape, "gradient", format, gradient, "gives normals to shading or their layer")
+            }),
+        })
     }
 
     fn bind(&self, parameters: &[Parameter], constants: &[(&str, f64)]) -> Tracer<T> {
@@ -347,7 +353,7 @@ struct Job<'a, T: Format> {
     shading: &'a Shading,
 }
 
-/// A finished tile.
+/// A finished tile; its planes are empty if every pixel is a proved miss.
 #[derive(Default)]
 struct Finished {
     certainty: Vec<Certainty>,
@@ -386,24 +392,27 @@ impl<T: Format> Job<'_, T> {
             let Traced { outcomes, cover, evaluations } = trace(context, tracer, geometry.effort);
             finished.evaluations += evaluations;
             if options.certificate {
-                finished.covers.push((cover, outcomes.clone()));
+                finished.covers.push((cover, inside(&frame, &outcomes)));
             }
             traced.push(outcomes);
         }
+        if traced.iter().all(Vec::is_empty) && options.rounding == Rounding::Outward {
+            return finished;
+        }
         let (width, height) = frame.size();
         let mut spots: Vec<(usize, Spot)> = Vec::new();
-        for index in 0..(width * height) as usize {
-            let (winner, certainty) = nearest(&traced, index, options.rounding);
+        finished.certainty.reserve((width * height) as usize);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let (winner, certainty) = nearest(&traced, pixel(x, y).into(), options.rounding);
             finished.certainty.push(certainty);
             let spot = winner.map(|(shape, outcome)| {
-                let ray = frame.ray(index as u32 % width, index as u32 / width);
                 let solid = scene.shapes[shape].kind == ShapeKind::Region;
-                (outcome, Spot { ray, t: outcome.t, shape, surface: outcome.surface, solid })
+                (outcome, Spot { ray: frame.ray(x, y), t: outcome.t, shape, surface: outcome.surface, solid })
             });
             if options.layers.depth {
                 finished.depth.push(spot.as_ref().map(|(outcome, spot)| depth(outcome, spot)));
             }
-            spots.extend(spot.map(|(_, spot)| (index, spot)));
+            spots.extend(spot.map(|(_, spot)| ((y * width + x) as usize, spot)));
         }
         finished.hits = spots.len() as u64;
         self.shade(&frame, &spots, &mut finished);
@@ -415,9 +424,11 @@ impl<T: Format> Job<'_, T> {
         let Space { scene, options, .. } = self.space;
         let (width, height) = frame.size();
         if options.layers.color {
-            finished.color = (frame.tile.y..frame.tile.y + height)
-                .flat_map(|y| std::iter::repeat_n(self.shading.background(y), width as usize))
-                .collect();
+            finished.color.reserve((width * height) as usize);
+            for y in frame.tile.y..=frame.tile.last_y {
+                let row = finished.color.len();
+                finished.color.resize(row + width as usize, self.shading.background(y));
+            }
         }
         if options.layers.normal {
             finished.normal = vec![[0.0; 3]; (width * height) as usize];
@@ -449,6 +460,19 @@ impl<T: Format> Job<'_, T> {
         }
     }
 
+    /// The colours of a picture in which nothing is drawn.
+    fn backdrop(&self) -> Vec<[u8; 3]> {
+        let Options { width, height, layers, .. } = self.space.options;
+        let mut colors = Vec::new();
+        if layers.color {
+            colors.reserve(width as usize * height as usize);
+            for y in 0..height {
+                colors.resize(colors.len() + width as usize, self.shading.background(y));
+            }
+        }
+        colors
+    }
+
     fn assemble(&self, finished: Vec<Finished>) -> Picture {
         let Space { options, geometry, .. } = self.space;
         let (width, height) = (options.width, options.height);
@@ -458,7 +482,7 @@ impl<T: Format> Job<'_, T> {
             width,
             height,
             certainty: vec![Certainty::Miss; pixels],
-            color: vec![[0; 3]; plane(options.layers.color)],
+            color: self.backdrop(),
             depth: vec![None; plane(options.layers.depth)],
             normal: vec![[0.0; 3]; plane(options.layers.normal)],
             stats: Stats::default(),
@@ -469,6 +493,9 @@ impl<T: Format> Job<'_, T> {
             let columns = (tile.last_x - tile.x + 1) as usize;
             for (row, y) in (tile.y..=tile.last_y).enumerate() {
                 let to = picture.index(tile.x, y);
+                if finished.certainty.is_empty() {
+                    break;
+                }
                 copy_row(&mut picture.certainty, to, &finished.certainty, row, columns);
                 copy_row(&mut picture.color, to, &finished.color, row, columns);
                 copy_row(&mut picture.depth, to, &finished.depth, row, columns);
@@ -492,6 +519,13 @@ impl<T: Format> Job<'_, T> {
     }
 }
 
+/// The outcomes of the pixels inside the picture, row by row.
+fn inside(frame: &Frame, outcomes: &[Outcome]) -> Vec<Outcome> {
+    let (width, height) = frame.size();
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| pixel(x, y)));
+    pixels.map(|pixel| outcomes.get(usize::from(pixel)).copied().unwrap_or(Outcome::MISS)).collect()
+}
+
 fn copy_row<P: Copy>(plane: &mut [P], to: usize, tile: &[P], row: usize, columns: usize) {
     if !plane.is_empty() {
         plane[to..to + columns].copy_from_slice(&tile[row * columns..(row + 1) * columns]);
@@ -501,19 +535,17 @@ fn copy_row<P: Copy>(plane: &mut [P], to: usize, tile: &[P], row: usize, columns
 /// What is drawn in a pixel, of several shapes, and what is proved of it: the nearest hit, if its own is proved and every
 /// other shape is refuted up to the end of its bracket.
 fn nearest(traced: &[Vec<Outcome>], index: usize, rounding: Rounding) -> (Option<(usize, Outcome)>, Certainty) {
+    let outcomes = || traced.iter().enumerate().filter_map(|(shape, outcomes)| Some((shape, outcomes.get(index)?)));
     let mut winner: Option<(usize, Outcome)> = None;
-    for (shape, outcomes) in traced.iter().enumerate() {
-        let outcome = outcomes[index];
-        if outcome.drawn && winner.is_none_or(|(_, nearest)| outcome.t < nearest.t) {
-            winner = Some((shape, outcome));
+    for (shape, outcome) in outcomes().filter(|(_, outcome)| outcome.drawn) {
+        if winner.is_none_or(|(_, nearest)| outcome.t < nearest.t) {
+            winner = Some((shape, *outcome));
         }
     }
     let unknown = match winner {
-        None => traced.iter().any(|outcomes| outcomes[index].unknown),
+        None => outcomes().any(|(_, outcome)| outcome.unknown),
         Some((shape, hit)) => {
-            let hidden =
-                |(other, outcomes): (usize, &Vec<Outcome>)| other != shape && outcomes[index].clear < hit.bracket[1];
-            hit.unknown || traced.iter().enumerate().any(hidden)
+            hit.unknown || outcomes().any(|(other, outcome)| other != shape && outcome.clear < hit.bracket[1])
         }
     };
     let certainty = match (rounding, unknown, winner.is_some()) {

@@ -8,7 +8,6 @@ use crate::render::finish::Onward;
 use crate::render::march::Context;
 use crate::render::march::March;
 use crate::render::march::Refuted;
-use crate::render::march::pixel;
 use crate::render::options::Stop;
 use crate::render::outcome::Outcome;
 use crate::render::outcome::Surface;
@@ -43,7 +42,7 @@ pub struct Effort {
 
 /// What a tile knows of one shape.
 pub struct Traced {
-    /// By pixel of the tile, row by row, without what lies beyond the picture.
+    /// By [`pixel`](crate::render::march::pixel) of the tile; empty if every pixel is a proved miss.
     pub outcomes: Vec<Outcome>,
     /// The refuted cover, if a certificate is wanted.
     pub cover: Vec<Refuted>,
@@ -56,12 +55,13 @@ pub fn trace<T: Real>(context: Context<'_>, tracer: &Tracer<T>, effort: Effort) 
     let mut solver = Solver::new(context, effort.stop, effort.depth, &tracer.root, &tracer.ends);
     let programs = [&tracer.piece, &tracer.ends, &tracer.face];
     let mut finisher = Finisher::new(context, (effort.stop, effort.depth), effort.poles, programs);
-    let mut outcomes = vec![Outcome::MISS; (TILE * TILE) as usize];
+    let mut outcomes = Vec::new();
     loop {
         march.run(ENOUGH);
         if march.settled.is_empty() && march.singles.is_empty() {
             break;
         }
+        outcomes.resize((TILE * TILE) as usize, Outcome::MISS);
         let settled = std::mem::take(&mut march.settled);
         solver.run(&settled, |job, settlement| match settlement {
             Settlement::Hit { bracket, t } => {
@@ -91,11 +91,5 @@ pub fn trace<T: Real>(context: Context<'_>, tracer: &Tracer<T>, effort: Effort) 
     let [piece, ends, face] = finisher.evaluations();
     let evaluations =
         Evaluations { beam, slope, root, ends: solver_ends + ends, piece, face, ..Evaluations::default() };
-    let (width, height) = context.frame.size();
-    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| pixel(x, y)));
-    Traced {
-        outcomes: pixels.map(|pixel| outcomes[usize::from(pixel)]).collect(),
-        cover: march.cover.unwrap_or_default(),
-        evaluations,
-    }
+    Traced { outcomes, cover: march.cover.unwrap_or_default(), evaluations }
 }

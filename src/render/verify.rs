@@ -190,6 +190,7 @@ struct Answers {
     end: u32,
     condition: bool,
     no_condition: bool,
+    no_zero: bool,
 }
 
 impl Checker<'_> {
@@ -292,7 +293,10 @@ impl Checker<'_> {
     fn answers(&self, lane: usize) -> Answers {
         let [field, centred, growth, end] = [0, 1, 2, 3].map(|slot| self.slope.bits(lane, slot));
         let condition = if self.context.condition { self.slope.bits(lane, 4) } else { !verdict::REFUTED };
+        let numerator = 4 + usize::from(self.context.condition);
+        let no_zero = numerator < self.slope.output_slots() && sign(self.slope.bits(lane, numerator)) != 0;
         Answers {
+            no_zero,
             field,
             centred: sign(centred),
             growth: sign(growth),
@@ -305,7 +309,7 @@ impl Checker<'_> {
     /// Whether the cell is refuted outright.
     fn is_refuted(&self, answers: Answers) -> bool {
         let centred = if answers.field & verdict::CONTINUOUS != 0 { answers.centred } else { 0 };
-        answers.no_condition || (answers.field | centred) & self.context.refuting() != 0
+        answers.no_condition || answers.no_zero || (answers.field | centred) & self.context.refuting() != 0
     }
 
     /// Refutes a cell again, in parts if need be.

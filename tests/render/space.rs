@@ -23,6 +23,7 @@ use imp::render::Renderer;
 use imp::render::Stop;
 use imp::render::Surface;
 use imp::render::render;
+use imp::render::verify;
 
 use crate::scenes::*;
 
@@ -179,15 +180,29 @@ fn a_double_sphere_stays_unknown() {
     }
 }
 
-/// y = 1 / x changes sign at x = 0 through a pole. The two sheets are hits, the pole is not.
+/// y = 1 / x has a pole at x = 0, which its numerator refutes.
 #[test]
-fn a_pole_is_no_hit() {
-    let scene = scene(ShapeKind::Equation, |graph, [x, y, _]| {
+fn a_rational_pole_is_refuted() {
+    let mut scene = scene(ShapeKind::Equation, |graph, [x, y, _]| {
         let one = graph.int(1);
         let inverse = graph.div(one, x);
         graph.sub(y, inverse)
     });
-    let mut scene = scene;
+    scene.view.camera.position = Some([3.0, -9.0, 1.0]);
+    let picture = draw(&scene, &Options { certificate: true, ..options(64) });
+    assert!(picture.stats.proved > 500 && picture.stats.unknown < 16, "{:?}", picture.stats);
+    let report = verify(&scene, &picture.certificate.unwrap(), &Interpreter, &Control::default()).unwrap();
+    assert_eq!(report.counts.proved, picture.stats.proved);
+}
+
+/// y = tan(2 x) changes sign at its zeros and at its poles. The sheets are hits, the poles are not.
+#[test]
+fn a_pole_is_no_hit() {
+    let mut scene = scene(ShapeKind::Equation, |graph, [x, y, _]| {
+        let angle = graph.add(x, x);
+        let tangent = graph.unary(Op::Tan, angle);
+        graph.sub(y, tangent)
+    });
     scene.view.camera.position = Some([3.0, -9.0, 1.0]);
     let picture = draw(&scene, &options(64));
     assert!(picture.stats.proved > 500, "{:?}", picture.stats);
