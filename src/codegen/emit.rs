@@ -39,11 +39,31 @@ pub const VECTOR: usize = 16;
 /// one gives code twice as fast, but its time grows with the square of the live values.
 const LIVE_LIMIT: usize = 600;
 
+/// Above this many lane operations it takes over, too: a picture is computed sooner than such a program is allocated well
+/// (66 000 operations: 4 s against 0.5 s).
+const LONG: usize = 20_000;
+
+/// Programs of more lane operations are refused: they take seconds to compile.
+const MAX_OPERATIONS: usize = 400_000;
+
+/// Bytes of stack that a kernel may take, which runs on threads that it does not know: an eighth of the smallest common
+/// stack of 2 MiB.
+const MAX_FRAME: u32 = 256 << 10;
+
 /// The machine code of a program: the function and its constants, with nothing to relocate.
+///
+/// # Errors
+/// If the program is too large (`KERNEL_TOO_LARGE`), or for a fault of ours.
 pub fn machine_code(program: &LaneProgram, isa: &OwnedTargetIsa, stride: usize) -> Result<Vec<u8>, Diagnostic> {
+    if program.ops.len() > MAX_OPERATIONS {
+        return Err(too_large(program));
+    }
     let mut context = Context::new();
     function(program, isa.frontend_config(), stride, &mut context);
     let code = context.compile(&**isa, &mut Default::default()).map_err(|error| internal(&error.inner))?;
+    if code.buffer.frame_layout().is_some_and(|frame| frame.frame_to_fp_offset > MAX_FRAME) {
+        return Err(too_large(program));
+    }
     if !code.buffer.relocs().is_empty() {
         return Err(internal(&"a kernel calls a function"));
     }
@@ -72,9 +92,16 @@ pub fn internal(error: &dyn std::fmt::Display) -> Diagnostic {
     Diagnostic::error(code::INTERNAL, format!("the code generator failed: {error}"))
 }
 
+/// A program that is not worth compiling, or needs too much stack; the interpreter takes it.
+fn too_large(program: &LaneProgram) -> Diagnostic {
+    let title = format!("this formula is too large to be compiled: {} operations on vectors", program.ops.len());
+    Diagnostic::error(code::KERNEL_TOO_LARGE, title)
+}
+
 /// The host's instruction set with the settings of this program.
 pub fn isa(program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
-    let allocator = if most_live(program) > LIVE_LIMIT { "single_pass" } else { "backtracking" };
+    let simple = program.ops.len() > LONG || most_live(program) > LIVE_LIMIT;
+    let allocator = if simple { "single_pass" } else { "backtracking" };
     let mut flags = settings::builder();
     let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
     for (name, value) in [

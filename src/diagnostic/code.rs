@@ -139,6 +139,8 @@ codes! {
     OTHER_SCENE = "E0508";
     /// A certificate that does not prove what it claims.
     REJECTED = "E0509";
+    /// A program too large to be compiled; never shown, the interpreter takes it.
+    KERNEL_TOO_LARGE = "E0510";
 
     /// A fault of Imp, not of its user.
     INTERNAL = "E0901";

@@ -1,6 +1,7 @@
-//! Source to scene in one function, [`compile`], which keeps every stage for `imp emit`, and the choice of the backend
-//! that makes kernels of the scene's formulas.
+//! Source to scene in one function, [`compile`], which keeps every stage for `imp emit`; and [`backend`], which makes
+//! kernels of the scene's formulas.
 
+mod backend;
 mod load;
 mod stages;
 
@@ -8,7 +9,6 @@ use std::path::Path;
 
 use num_rational::BigRational;
 
-use crate::codegen::Compiler;
 use crate::derive;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
@@ -16,9 +16,7 @@ use crate::diagnostic::Severity;
 use crate::diagnostic::SourceMap;
 use crate::graph::Graph;
 use crate::graph::Value;
-use crate::interpret::Interpreter;
 use crate::interval::Interval;
-use crate::kernel::Backend;
 use crate::passes;
 use crate::passes::Report;
 use crate::program;
@@ -29,6 +27,7 @@ use crate::program::scene::Scene;
 use crate::syntax;
 use crate::syntax::ast::Module;
 
+pub use crate::session::backend::backend;
 pub use crate::session::load::MAX_BYTES;
 pub use crate::session::load::bytes;
 pub use crate::session::stages::Emission;
@@ -200,11 +199,6 @@ pub fn input_range(scene: &Scene, name: &str) -> Interval {
     }
     let parameter = scene.parameters.iter().find(|parameter| parameter.name == name);
     parameter.and_then(|parameter| parameter.range).unwrap_or(Interval::ENTIRE)
-}
-
-/// The compiler where it knows the machine, else the interpreter: slower, the same answers.
-pub fn backend() -> &'static dyn Backend {
-    if Compiler::available() { &Compiler } else { &Interpreter }
 }
 
 #[cfg(test)]
