@@ -50,7 +50,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (left, top) = (place % COLUMNS * (SIDE + GAP), place / COLUMNS * (SIDE + GAP));
         for y in 0..SIDE {
             for x in 0..SIDE {
-                let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| large.color[large.index(2 * x + i, 2 * y + j)]);
+                let four =
+                    [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| large.color[large.index(2 * x + i, 2 * y + j)]);
                 let mean = [0, 1, 2].map(|c| (four.iter().map(|pixel| u32::from(pixel[c])).sum::<u32>() / 4) as u8);
                 sheet.put_pixel(left + x, top + y, Rgb(mean));
             }

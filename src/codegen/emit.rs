@@ -4,6 +4,8 @@
 //! every constant is a vector constant and the optimiser is off. Floating-point operations are pure to Cranelift, so the
 //! mode must not change inside a function: it is set around the call (`rounding`).
 
+use std::sync::OnceLock;
+
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::AbiParam;
 use cranelift_codegen::ir::ConstantData;
@@ -98,10 +100,19 @@ fn too_large(program: &LaneProgram) -> Diagnostic {
     Diagnostic::error(code::KERNEL_TOO_LARGE, title)
 }
 
-/// The host's instruction set with the settings of this program.
+/// The host's instruction set with the settings of this program; made once for each register allocator.
 pub fn isa(program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
+    static MADE: [OnceLock<OwnedTargetIsa>; 2] = [OnceLock::new(), OnceLock::new()];
     let simple = program.ops.len() > LONG || most_live(program) > LIVE_LIMIT;
-    let allocator = if simple { "single_pass" } else { "backtracking" };
+    let made = &MADE[usize::from(simple)];
+    if let Some(isa) = made.get() {
+        return Ok(isa.clone());
+    }
+    let isa = host(if simple { "single_pass" } else { "backtracking" })?;
+    Ok(made.get_or_init(|| isa).clone())
+}
+
+fn host(allocator: &str) -> Result<OwnedTargetIsa, Diagnostic> {
     let mut flags = settings::builder();
     let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
     for (name, value) in [
