@@ -372,3 +372,101 @@ impl Frame {
         (entry <= exit).then_some((entry, exit))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cameras() -> Vec<Camera> {
+        let domain = [Interval::new(-2.0, 2.0).unwrap(); 3];
+        let mut cameras = Vec::new();
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            for (position, fov, size) in [
+                (None, None, (130, 70)),
+                (Some([0.3, -7.0, 0.1]), Some(20.0), (65, 64)),
+                (Some([0.1, 0.2, 0.3]), Some(140.0), (200, 33)),
+                (Some([4.0, 4.0, 4.0]), Some(50.0), (1, 1)),
+                (Some([-900.0, 30.0, 5000.0]), Some(0.05), (96, 96)),
+            ] {
+                let settings = CameraSettings { position, fov, projection: Some(projection), ..Default::default() };
+                cameras.push(Camera::new(&settings, &domain, size).unwrap());
+            }
+        }
+        cameras
+    }
+
+    #[test]
+    fn tiles_cover_every_pixel_once_and_have_a_dominant_axis() {
+        for camera in cameras() {
+            let mut seen = vec![0u8; camera.pixels()];
+            for tile in camera.tiles() {
+                let frame = Frame::new(&camera, tile);
+                let (width, height) = frame.size();
+                for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                    seen[((tile.y + y) * camera.width + tile.x + x) as usize] += 1;
+                    let direction = frame.ray(x, y).direction;
+                    assert_eq!(direction[tile.axis], tile.sign);
+                    assert!(direction.iter().all(|d| d.abs() < 4.0), "{direction:?}");
+                }
+            }
+            assert!(seen.iter().all(|&count| count == 1));
+        }
+    }
+
+    #[test]
+    fn hulls_hold_every_ray_and_clips_hold_every_clip() {
+        let domain = [(-2.0, 2.0), (-1.0, 0.7), (0.1, 2.0)].map(|(lo, hi)| Interval::new(lo, hi).unwrap());
+        let mut inside = 0;
+        for camera in cameras() {
+            for tile in camera.tiles() {
+                let frame = Frame::new(&camera, tile);
+                let (width, height) = frame.size();
+                for size in [1, 2, 8, 32, 64].into_iter().filter(|&size| size <= tile.size) {
+                    for (x, y) in [(0, 0), (width - 1, height - 1)].map(|(x, y)| (x / size * size, y / size * size)) {
+                        let hull = frame.hull(x, y, size);
+                        let clip = frame.clip(&hull, &domain);
+                        let rows = y..(y + size).min(height);
+                        for (x, y) in rows.flat_map(|y| (x..(x + size).min(width)).map(move |x| (x, y))) {
+                            let varying = frame.varying(x, y);
+                            assert!((0..3).all(|c| hull.0[c] <= varying[c] && varying[c] <= hull.1[c]));
+                            if let Some((entry, exit)) = frame.ray(x, y).clip(&domain) {
+                                let (first, last) = clip.expect("a ray of the block meets the domain");
+                                assert!(first <= entry[1] && exit[0] <= last, "{entry:?} {exit:?} {clip:?}");
+                                inside += 1;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        assert!(inside > 1000, "the test tests nothing: {inside}");
+    }
+
+    #[test]
+    fn between_entry_and_exit_a_ray_is_inside_the_domain() {
+        let domain = [(-2.0, 2.0), (-1.0, 0.7), (0.1, 2.0)].map(|(lo, hi)| Interval::new(lo, hi).unwrap());
+        let mut rng = fastrand::Rng::with_seed(3);
+        let mut number = |scale: f64| (rng.f64() * 2.0 - 1.0) * scale;
+        let mut hits = 0;
+        for _ in 0..20_000 {
+            let direction = [1.0, number(1.5), number(1.5)];
+            let ray = Ray { origin: [number(9.0), number(3.0), number(3.0)], direction };
+            let Some((entry, exit)) = ray.clip(&domain) else { continue };
+            let at = |t: f64, c: usize| {
+                Interval::point(ray.origin[c]) + Interval::point(t) * Interval::point(ray.direction[c])
+            };
+            for t in [entry[1], exit[0]] {
+                if entry[1] <= t && t <= exit[0] {
+                    hits += 1;
+                    assert!((0..3).all(|c| domain[c].contains_interval(at(t, c))), "{ray:?} leaves the domain at {t}");
+                }
+            }
+            // Before the earliest entry and after the latest exit, some coordinate is outside.
+            for t in [entry[0].next_down(), exit[1].next_up()] {
+                let outside = t < 0.0 || (0..3).any(|c| !domain[c].contains(ray.at(t)[c]));
+                assert!(outside || (0..3).any(|c| !domain[c].contains_interval(at(t, c))), "{ray:?} is inside at {t}");
+            }
+        }
+        assert!(hits > 1000);
+    }
+}

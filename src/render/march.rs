@@ -263,10 +263,7 @@ impl<'a, T: Real> March<'a, T> {
             let grid = self.context.grid;
             if grid.cut(u64::from(item.k) + 1, item.depth) <= entry {
                 // Everything before the entry is outside the domain.
-                (item.k, item.depth, item.sign) = (grid.cell(entry, 0) as u32, 0, 0);
-                while grid.cut(u64::from(item.k) + 1, item.depth) <= entry {
-                    item.k += 1;
-                }
+                (item.k, item.sign) = (grid.cell(entry, item.depth) as u32, 0);
             }
         }
         self.stack.push(item);
@@ -478,6 +475,11 @@ impl<'a, T: Real> March<'a, T> {
         let continuous = field & verdict::CONTINUOUS != 0;
         // Where the derivative is undefined on all of the box, it says nothing, although the field may be continuous.
         let (centred, growth) = if continuous { (sign(centred), sign(slope)) } else { (0, 0) };
+        if field & self.context.refuting() != 0 || self.context.condition && refutes_condition(condition) {
+            // Unlike the plain kernel, this one knows of cells outside the domain that they are.
+            self.refute(item, sign(field), Test::Natural);
+            return;
+        }
         if centred & self.context.refuting() != 0 {
             self.refute(item, centred, Test::Centred);
             return;

@@ -113,8 +113,8 @@ impl fmt::Display for Plan {
     }
 }
 
-/// The arithmetic of the beams, with the reason. Affine forms cost several times as much as intervals and pay where
-/// the same quantity enters a formula several times, through operations that have an affine form (Hijazi 2008, table
+/// The arithmetic that refutes cells of beams, with the reason; everything else is interval arithmetic. Affine forms cost
+/// several times as much as intervals and pay where the same quantity enters a formula several times, through operations that have an affine form (Hijazi 2008, table
 /// 7.1: 1.5 to 4 times faster for expanded polynomials, slower for superquadrics).
 pub fn arithmetic(graph: &Graph, field: Value, choice: Enclosures) -> (Arithmetic, &'static str) {
     match choice {
@@ -126,9 +126,15 @@ pub fn arithmetic(graph: &Graph, field: Value, choice: Enclosures) -> (Arithmeti
     let mut uses = vec![0usize; graph.len()];
     let mut opaque = 0usize;
     let mut products = 0usize;
-    for (_, node) in graph.iter().filter(|(value, _)| needed[value.index()]) {
+    let mut varies = vec![false; graph.len()];
+    for (value, node) in graph.iter().filter(|(value, _)| needed[value.index()]) {
+        varies[value.index()] =
+            matches!(node.op, Op::Var(_)) || node.operands().iter().any(|operand| varies[operand.index()]);
         for operand in node.operands() {
             uses[operand.index()] += 1;
+        }
+        if !varies[value.index()] {
+            continue;
         }
         if node.op.arity() > 0 && node.op.affine() == AffineForm::ThroughInterval {
             opaque += 1;
@@ -137,7 +143,7 @@ pub fn arithmetic(graph: &Graph, field: Value, choice: Enclosures) -> (Arithmeti
     }
     let repeated: usize = graph
         .iter()
-        .filter(|(value, node)| needed[value.index()] && graph.as_constant(*value).is_none() && node.op != Op::Pi)
+        .filter(|(value, _)| varies[value.index()])
         .map(|(value, _)| uses[value.index()].saturating_sub(1))
         .sum();
     if opaque > 0 {

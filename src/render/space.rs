@@ -105,7 +105,7 @@ impl Geometry {
         let effort = Effort {
             stop: options.stop,
             depth,
-            leaf: LEAF.min(depth).min(single),
+            leaf: LEAF.min(single),
             poles: options.poles,
             certificate: options.certificate,
         };

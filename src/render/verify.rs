@@ -77,7 +77,7 @@ pub fn verify(
         let (beams, _) = arithmetic(&scene.graph, shape.field, enclosures);
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: Rounding::Outward, arithmetic: beams };
-        let specs = [orders.slope(), orders.verdicts(), orders.face()];
+        let specs = [orders.beam(), orders.slope(), orders.verdicts(), orders.face()];
         let mut bound = Vec::new();
         for spec in specs {
             bound.push(Compiled::<f64>::new(backend, &spec)?.bind(&scene.parameters, &constants));
@@ -141,13 +141,15 @@ fn verify_tile(
     for ((proof, shape), programs) in proofs.iter().zip(&scene.shapes).zip(programs) {
         let mut checker = Checker {
             context: geometry.context(&frame, scene, shape),
-            slope: Batch::new(&programs[0], GROUPS),
-            ends: Batch::new(&programs[1], GROUPS),
-            face: Batch::new(&programs[2], 1),
+            beam: Batch::new(&programs[0], GROUPS),
+            slope: Batch::new(&programs[1], GROUPS),
+            ends: Batch::new(&programs[2], GROUPS),
+            face: Batch::new(&programs[3], 1),
         };
         seen.push(checker.check(proof)?);
         report.cells += proof.cover.len() as u64;
-        report.evaluations += checker.slope.evaluations + checker.ends.evaluations + checker.face.evaluations;
+        report.evaluations +=
+            checker.beam.evaluations + checker.slope.evaluations + checker.ends.evaluations + checker.face.evaluations;
     }
     for pixel in 0..(width * height) as usize {
         let shapes: Vec<Seen> = seen.iter().map(|shape| shape[pixel]).collect();
@@ -170,6 +172,8 @@ const GROUPS: usize = 8;
 /// Replays one shape's proof in one tile.
 struct Checker<'a> {
     context: Context<'a>,
+    /// Refutation of the field by the arithmetic of beams.
+    beam: Batch<f64>,
     /// Verdicts of field, centred form, slope, value at the end, and condition over a box.
     slope: Batch<f64>,
     /// Verdicts of field and condition.
@@ -184,6 +188,7 @@ type Hull = ([f64; 3], [f64; 3]);
 /// The answers over a box.
 #[derive(Debug, Clone, Copy)]
 struct Answers {
+    beam: u32,
     field: u32,
     centred: u32,
     growth: u32,
@@ -214,6 +219,7 @@ impl Checker<'_> {
                 let hull = self.context.frame.hull(cell.x.into(), cell.y.into(), 1 << cell.level);
                 self.load(lane, &hull, start, end);
             }
+            self.beam.run(cells.len());
             self.slope.run(cells.len());
             let answers: Vec<Answers> = (0..cells.len()).map(|lane| self.answers(lane)).collect();
             for (&(span, cell), answers) in cells.iter().zip(answers) {
@@ -281,11 +287,9 @@ impl Checker<'_> {
     }
 
     fn load(&mut self, lane: usize, hull: &Hull, start: f64, end: f64) {
-        for slot in 0..3 {
-            self.slope.set_range(lane, slot, hull.0[slot], hull.1[slot]);
-        }
+        load_plain(&mut self.beam, lane, hull, [start, end]);
+        load_plain(&mut self.slope, lane, hull, [start, end]);
         let middle = (0.5 * (start + end)).clamp(start, end);
-        self.slope.set_range(lane, 3, start, end);
         self.slope.set_range(lane, 4, middle, middle);
         self.slope.set_range(lane, 5, end, end);
     }
@@ -297,6 +301,7 @@ impl Checker<'_> {
         let no_zero = numerator < self.slope.output_slots() && sign(self.slope.bits(lane, numerator)) != 0;
         Answers {
             no_zero,
+            beam: self.beam.bits(lane, 0),
             field,
             centred: sign(centred),
             growth: sign(growth),
@@ -309,12 +314,15 @@ impl Checker<'_> {
     /// Whether the cell is refuted outright.
     fn is_refuted(&self, answers: Answers) -> bool {
         let centred = if answers.field & verdict::CONTINUOUS != 0 { answers.centred } else { 0 };
-        answers.no_condition || answers.no_zero || (answers.field | centred) & self.context.refuting() != 0
+        answers.no_condition
+            || answers.no_zero
+            || (answers.beam | answers.field | centred) & self.context.refuting() != 0
     }
 
     /// Refutes a cell again, in parts if need be.
     fn refutes(&mut self, hull: &Hull, [start, end]: [f64; 2], halvings: u32) -> bool {
         self.load(0, hull, start, end);
+        self.beam.run(1);
         self.slope.run(1);
         if self.is_refuted(self.answers(0)) {
             return true;
