@@ -21,7 +21,7 @@ TABLES = (ROOT / "src/derive/elementary/tables.rs").read_text()
 
 
 def table(name, precision):
-    body = re.search(r"pub const %s: \w+ = \w+ \{(.*?)\n\};" % name, TABLES, re.S).group(1)
+    body = re.search(r"pub const %s: \w+ =\s+\w+ \{(.*?)\};" % name, TABLES, re.S).group(1)
     numbers = re.search(r"%s: &\[(.*?)\]" % precision, body, re.S).group(1)
     return [float(x) for x in numbers.replace("\n", " ").split(",") if x.strip()]
 
@@ -146,12 +146,13 @@ def report(section, figure):
     print(f"{section:14} single {results['single']:.3f}  double {results['double']:.3f}")
 
 
-# Exponentials: the error of s relative to |s|. The reduced argument enters everywhere as one and the same number, so its
+# Exponentials: the error of s relative to |r|. The reduced argument enters everywhere as one and the same number, so its
 # own error is counted once, through the derivative.
 def exp_like(p, factor):
     cs = table("EXP", p.name)
     for lo, hi in both(2.0**-20, 0.3467):
-        s_min = min(abs(math.expm1(lo)), abs(math.expm1(hi)))
+        per_r = {None: 1.0, "LN_2": math.log(2), "LN_10": math.log(10)}[factor]
+        scale = min(abs(lo), abs(hi)) / per_r
         if factor is None:
             r = V(p, lo, hi)
             s = fma(mul(r, r), poly(cs, r), r)
@@ -163,7 +164,8 @@ def exp_like(p, factor):
             low = fma(r, l[1], curved)
             s = fma(r, l[0], low)
         reduction = 0.0 if factor == "LN_2" else 1.01 * p.eps * max(abs(lo), abs(hi)) * math.exp(hi)
-        yield (s.err + reduction) / s_min + approximation("EXP", p.name) * p.eps
+        err = s.err + reduction + approximation("EXP", p.name) * p.eps * max(abs(math.expm1(lo)), abs(math.expm1(hi)))
+        yield err / scale
 
 
 # Logarithms: the error of head + tail relative to |head|.

@@ -21,12 +21,12 @@ pub enum Base {
 }
 
 impl Base {
-    /// The error of `s`, relative to its `scale`, in epsilon: sections "exp", "exp2" and "exp10".
+    /// The error of `s`, relative to |r|, in epsilon: sections "exp", "exp2" and "exp10".
     const fn error(self) -> f64 {
         match self {
-            Base::E => 2.8125,
-            Base::Two => 2.4375,
-            Base::Ten => 3.5625,
+            Base::E => 3.375,
+            Base::Two => 1.875,
+            Base::Ten => 9.6875,
         }
     }
 }
@@ -37,9 +37,7 @@ pub struct Exponential {
     pub n: Lane,
     pub s: Lane,
     base: Base,
-    /// At least |s|, and more where the reduction's absolute error could count: its 2^-99.9 (single: 2^-45.5) is
-    /// below 2^-4 epsilon times the least scale.
-    pub scale: Lane,
+    r: Lane,
 }
 
 /// The exponential of a number between the ends of [`Base::range`].
@@ -49,13 +47,13 @@ pub fn exponential(b: &mut Builder, base: Base, x: Lane) -> Exponential {
             let [per_octave] = b.parts(&tables::LOG2_E);
             let (n, r) = reduce(b, x, per_octave, &tables::LN_2);
             let s = minus_one(b, r);
-            Exponential { n, s, base, scale: scale(b, s) }
+            Exponential { n, s, base, r }
         }
         Base::Ten => {
             let [per_octave] = b.parts(&tables::LOG2_10);
             let (n, r) = reduce(b, x, per_octave, &tables::LOG10_2);
             let s = scaled_minus_one(b, r, &tables::LN_10);
-            Exponential { n, s, base, scale: scale(b, s) }
+            Exponential { n, s, base, r }
         }
         Base::Two => {
             let n = b.nearest(x);
@@ -68,13 +66,7 @@ pub fn exponential(b: &mut Builder, base: Base, x: Lane) -> Exponential {
 /// 2^(n + r) for |r| <= 1/2.
 pub fn power_of_two(b: &mut Builder, n: Lane, r: Lane) -> Exponential {
     let s = scaled_minus_one(b, r, &tables::LN_2);
-    Exponential { n, s, base: Base::Two, scale: b.abs(s) }
-}
-
-fn scale(b: &mut Builder, s: Lane) -> Lane {
-    let least = b.by_precision(1.0 / (1u64 << 18) as f64, 1.0 / (1u64 << 40) as f64);
-    let magnitude = b.abs(s);
-    b.max(magnitude, least)
+    Exponential { n, s, base: Base::Two, r }
 }
 
 /// x = n L + r with |r| <= L/2 and a little.
@@ -120,7 +112,12 @@ impl Base {
 impl Exponential {
     /// 1 + s as an approximation.
     pub fn mantissa(self, b: &mut Builder) -> Approx {
-        Approx { head: b.number(1.0), tail: self.s, factor: b.epsilons(self.base.error()), scale: self.scale }
+        // Never so small that underflow or the reduction's absolute error could count, which is at most 2^-99.9
+        // (single: 2^-45.5), below 2^-4 epsilon times the least scale.
+        let least = b.by_precision(1.0 / (1u64 << 18) as f64, 1.0 / (1u64 << 40) as f64);
+        let scale = b.abs(self.r);
+        let scale = b.max(scale, least);
+        Approx { head: b.number(1.0), tail: self.s, factor: b.epsilons(self.base.error()), scale }
     }
 
     /// 2^n v for |v| < 2, rounded once: exact where the result is normal.
@@ -198,18 +195,19 @@ pub fn expm1(b: &mut Builder, x: Ends) -> Applied {
         let end = b.clamp(end, least, greatest);
         exponential(b, Base::E, end)
     });
-    // The least scale would blur the neighbourhood of 0: where n = 0 nothing was reduced.
-    let [low, high] = [low, high].map(|end| {
-        let octaves = b.abs(end.n);
-        let magnitude = b.abs(end.s);
-        let missed = b.by_precision(1.0 / (1u64 << 31) as f64, 1.0 / (1u64 << 58) as f64);
-        Exponential { scale: b.fma(octaves, missed, magnitude), ..end }
-    });
     let factor = b.epsilons(Base::E.error());
-    let above = b.fma(high.scale, factor, high.s);
+    // Near 0 the error must stay relative. Where n = 0 nothing was reduced, else the reduction's error is n 2^-110
+    // (single: n 2^-53).
+    let missed = b.by_precision(1.0 / (1u64 << 31) as f64, 1.0 / (1u64 << 58) as f64);
+    let [low_scale, high_scale] = [low, high].map(|end| {
+        let octaves = b.abs(end.n);
+        let magnitude = b.abs(end.r);
+        b.fma(octaves, missed, magnitude)
+    });
+    let above = b.fma(high_scale, factor, high.s);
     let hi = shifted(b, high.n, above, false);
     let minus_s = b.neg(low.s);
-    let below = b.fma(low.scale, factor, minus_s);
+    let below = b.fma(low_scale, factor, minus_s);
     let nlo = shifted(b, low.n, below, true);
     // Nothing is below -1, and the lower end stays finite.
     let one = b.number(1.0);

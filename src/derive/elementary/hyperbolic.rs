@@ -114,10 +114,9 @@ fn tanh_at(b: &mut Builder, x: Lane) -> Approx {
     let two = b.number(2.0);
     let denominator = b.add(t, two);
     let quotient = b.div(t, denominator);
-    let tiny = b.format().tiny;
-    let tiny = b.number(tiny);
-    let scale = b.add(quotient, tiny);
-    Approx::of(b, quotient, TANH_ERROR, scale).with_sign_of(b, x)
+    let negligible = b.negligible(magnitude);
+    let value = b.select(negligible, magnitude, quotient);
+    Approx::of(b, value, TANH_ERROR, value).with_sign_of(b, x)
 }
 
 /// Twice a halved end, kept above -inf.
@@ -182,6 +181,9 @@ fn asinh_at(b: &mut Builder, x: Lane) -> Approx {
     let root = b.sqrt(sum);
     let denominator = b.add(root, one);
     let more = b.div(square, denominator);
+    let negligible = b.negligible(magnitude);
+    let zero = b.zero();
+    let more = b.select(negligible, zero, more);
     let w = b.add(magnitude, more);
     let w = b.select(large, magnitude, w);
     log1p_core(b, w, Some(octave), ASINH_ARGUMENT).with_sign_of(b, x)

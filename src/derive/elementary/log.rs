@@ -142,10 +142,9 @@ pub fn logarithm(b: &mut Builder, base: Base, x: Lane) -> Approx {
     combine(b, base, k, f, rest, base.error())
 }
 
-/// ln(1 + w) + j ln 2 for w > -1 and an integer j; an error of [`Format::tiny`] is added to the relative one.
-/// `more_epsilons` is what the argument's own relative error adds.
+/// ln(1 + w) + j ln 2 for w > -1 and an integer j, 0 where w is small. `more_epsilons` is what the argument's own relative error adds.
 pub fn log1p_core(b: &mut Builder, w: Lane, j: Option<Lane>, more_epsilons: f64) -> Approx {
-    let &Format { bias, fraction, tiny, .. } = b.format();
+    let &Format { bias, fraction, .. } = b.format();
     let (zero, one) = (b.zero(), b.number(1.0));
     // 1 + w = u + c. The 1 counts for nothing, and might overflow, beyond 2^60 (single: 2^30): it is less than
     // 2^-8 epsilon there, and the logarithm above 20.
@@ -173,9 +172,11 @@ pub fn log1p_core(b: &mut Builder, w: Lane, j: Option<Lane>, more_epsilons: f64)
     let rest = curved(b, f);
     let rest = b.add(rest, lost);
     let k = j.map_or(k, |j| b.add(k, j));
-    let sum = combine(b, Base::E, k, f, rest, ERROR_LOG1P + more_epsilons);
-    let tiny = b.number(tiny);
-    Approx { scale: b.add(sum.scale, tiny), ..sum }
+    // Next to 0 the correction is less than epsilon / 8, and its parts underflow.
+    let magnitude = b.abs(w);
+    let negligible = b.negligible(magnitude);
+    let rest = b.select(negligible, zero, rest);
+    combine(b, Base::E, k, f, rest, ERROR_LOG1P + more_epsilons)
 }
 
 /// A logarithm whose argument has its pole at `pole`: -inf there, inf at inf.

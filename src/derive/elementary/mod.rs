@@ -15,8 +15,8 @@
 //! Programs that prove something round up: then a computed d has the sign of the true one and at most the smallest
 //! number u too much, so x + d rounds to x, or to the number above x where the correction is positive, and E |x| > 0
 //! moves either end by a further u at least. If the true correction is positive, the lower end is at most x; if it is
-//! negative, the computed d is -0 and the lower end at most x - u. Cores whose correction is a difference (logarithms,
-//! the quotient in tanh) instead add [`Format::tiny`] to their error.
+//! negative, the computed d is -0 and the lower end at most x - u. Cores whose correction is a difference or a quotient
+//! (log1p and what is made of it, tanh) take the argument itself where the correction cannot count.
 
 mod exp;
 mod hyperbolic;
@@ -33,6 +33,7 @@ use crate::derive::ends::Ends;
 use crate::derive::lanes::Builder;
 use crate::derive::lanes::Lane;
 use crate::derive::lanes::LaneOp;
+use crate::derive::lanes::Mask;
 use crate::graph::Op;
 
 use tables::Constant;
@@ -125,8 +126,6 @@ struct Format {
     min_normal: f64,
     /// 1.5 2^fraction: added to an integer, it leaves the integer in the low bits of the fraction, exactly.
     magic: f64,
-    /// An absolute error far above every underflow, in units of the relative error: epsilon times this is normal.
-    tiny: f64,
 }
 
 static SINGLE: Format = Format {
@@ -137,7 +136,6 @@ static SINGLE: Format = Format {
     max: f32::MAX as f64,
     min_normal: f32::MIN_POSITIVE as f64,
     magic: 12_582_912.0,
-    tiny: 1.0 / (1u128 << 96) as f64,
 };
 
 static DOUBLE: Format = Format {
@@ -148,7 +146,6 @@ static DOUBLE: Format = Format {
     max: f64::MAX,
     min_normal: f64::MIN_POSITIVE,
     magic: 6_755_399_441_055_744.0,
-    tiny: f64::MIN_POSITIVE * (1u64 << 60) as f64,
 };
 
 /// A real number known to be `head + tail` (their exact sum) up to an error of `factor scale >= 0`.
@@ -284,6 +281,12 @@ impl Builder {
     fn clamp(&mut self, x: Lane, lo: Lane, hi: Lane) -> Lane {
         let x = self.max(x, lo);
         self.min(x, hi)
+    }
+
+    /// Where a number >= 0 is so small that its square is below epsilon / 4 of it.
+    fn negligible(&mut self, magnitude: Lane) -> Mask {
+        let limit = self.epsilons(0.25);
+        self.less(magnitude, limit)
     }
 
     /// An upper end that is at least `-max`, as every upper end must be; a negated lower end likewise.
