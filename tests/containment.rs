@@ -180,6 +180,10 @@ impl Check<'_> {
             return;
         }
         let y = point.get(1).copied().unwrap_or(0.0);
+        if self.op == Op::Mod {
+            assert!(oracle::modulo_within(point[0], y, lo, hi), "{context} at {point:?} escapes [{lo:e}, {hi:e}]");
+            return;
+        }
         let Some(exact) = oracle::value(self.op, point[0], y, self.cc) else {
             panic!("{context} at {point:?}: the value in {value} escapes [{lo:e}, {hi:e}]");
         };

@@ -1,7 +1,8 @@
 //! Where in the domain a scene's shapes can be: what the automatic camera frames.
 //!
 //! The domain is halved along all axes, level by level, and cells that the reference arithmetic refutes are dropped. The
-//! answer depends on the scene alone, not on a backend, so that a certificate is checked against the same rays.
+//! answer depends on the scene alone, not on a backend, so that a certificate is checked against the same rays; and not on
+//! the values of parameters or the time, so that the camera stands still while they change.
 
 use glam::DVec3;
 
@@ -68,7 +69,7 @@ fn may_hold(scene: &Scene, cell: &Cell) -> bool {
     };
     let input = |name: &String| {
         let coordinate = COORDINATES.iter().position(|c| c == name).map(range);
-        let parameter = || scene.parameters.iter().find(|parameter| &parameter.name == name).map(|p| p.value);
+        let parameter = || scene.parameters.iter().find(|parameter| &parameter.name == name)?.range;
         Decorated::new(coordinate.or_else(parameter).unwrap_or(Interval::ENTIRE))
     };
     let inputs: Vec<Decorated> = scene.graph.variables().iter().map(input).collect();

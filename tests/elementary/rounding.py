@@ -168,7 +168,7 @@ def exp_like(p, factor):
         yield err / scale
 
 
-# Logarithms: the error of head + tail relative to |head|.
+# Logarithms: the error of head + tail relative to |head|, and absolute.
 def log_rest(p, f):
     """ln(1 + f) - f, with the approximation error of its polynomial."""
     s = div(f, add(f, 2.0))
@@ -186,7 +186,7 @@ def log_rest(p, f):
     return rest
 
 
-def log_like(p, base, lost=False):
+def log_like(p, base, lost=False, absolute=False):
     per_f = {"e": 1.0, "2": 1 / math.log(2), "10": 1 / math.log(10)}[base]
     per_k = {"e": math.log(2), "2": 1.0, "10": math.log10(2)}[base]
     for lo, hi in both(2.0**-20, 0.4143):
@@ -218,7 +218,7 @@ def log_like(p, base, lost=False):
                 # What the sum with k loses is kept, up to epsilon of it.
                 ulp = p.eps * max(map(abs, head))
                 tail = add(tail, V(p, -ulp, ulp, p.eps * ulp))
-            yield tail.err / magnitude
+            yield tail.err / (1.0 if absolute else magnitude)
 
 
 # Sine and cosine: the error relative to the head, r or 1, the reduction's one rounding included.
@@ -247,14 +247,16 @@ def tangent(p):
     for lo, hi in cells(2.0**-20, top):
         r = V(p, lo, hi)
         u = mul(r, r)
-        s = fma(r, mul(u, poly(table("SIN", p.name), u)), r)
+        tail = mul(r, mul(u, poly(table("SIN", p.name), u)))
+        # The third part of the reduction goes into the tail: one rounding more, and nothing to speak of in size.
+        s = add(r, tail.rounded())
         s = s.known((math.sin(lo), math.sin(hi)))
         s.err += approximation("SIN", p.name) * p.eps * math.sin(hi)
         c = fma(u, poly(table("COS", p.name), u), 1.0)
         c = c.known((math.cos(hi), math.cos(lo)))
         c.err += approximation("COS", p.name) * p.eps * (1 - math.cos(hi))
-        # Two roundings of r: d tan r / tan r = dr / (sin r cos r), and the same for the cotangent.
-        reduction = 2 * p.eps * hi / (math.sin(lo) * math.cos(hi))
+        # The reduction's rounding: d tan r / tan r = dr / (sin r cos r), and the same for the cotangent.
+        reduction = 1.01 * p.eps * hi / (math.sin(lo) * math.cos(hi))
         yield s.err / math.sin(lo) + c.err / math.cos(hi) + p.eps * 1.001 + reduction
 
 
@@ -394,6 +396,10 @@ if __name__ == "__main__":
     report("log2", lambda p: log_like(p, "2"))
     report("log10", lambda p: log_like(p, "10"))
     report("log1p", lambda p: log_like(p, "e", lost=True))
+    report("ln, absolute", lambda p: log_like(p, "e", absolute=True))
+    report("log2, absolute", lambda p: log_like(p, "2", absolute=True))
+    report("log10, absolute", lambda p: log_like(p, "10", absolute=True))
+    report("log1p, absolute", lambda p: log_like(p, "e", lost=True, absolute=True))
     report("sin", sine)
     report("cos", cosine)
     report("tan", tangent)

@@ -12,8 +12,8 @@ use crate::derive::lanes::Builder;
 use crate::derive::lanes::Lane;
 use crate::derive::lanes::LaneOp;
 
-/// The error of log1p relative to its head, in epsilon; its argument 1 + x carries the rounding of the sum along: section "log1p".
-const ERROR_LOG1P: f64 = 1.75;
+/// The error of log1p, whose argument 1 + x carries the rounding of the sum along: section "log1p".
+const LOG1P_ERROR: Error = Error { relative: 1.75, absolute: 0.48 };
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Base {
@@ -22,13 +22,51 @@ pub enum Base {
     Ten,
 }
 
+/// The error of a logarithm in epsilon is below `relative` |head| and, however large the head, below `absolute`.
+#[derive(Clone, Copy)]
+struct Error {
+    relative: f64,
+    absolute: f64,
+}
+
 impl Base {
-    /// The error relative to the head, in epsilon: sections "ln", "log2" and "log10".
-    pub const fn error(self) -> f64 {
+    /// Sections "ln", "log2" and "log10".
+    const fn error(self) -> Error {
         match self {
-            Base::E | Base::Two => 1.1875,
-            Base::Ten => 1.4375,
+            Base::E => Error { relative: 1.1875, absolute: 0.34 },
+            Base::Two => Error { relative: 1.1875, absolute: 0.48 },
+            Base::Ten => Error { relative: 1.4375, absolute: 0.18 },
         }
+    }
+}
+
+impl Base {
+    /// Factor and cap of the error of a multiple of the logarithm in two parts: in units of the multiple up to the cap
+    /// times the multiplier. The second parts lose some epsilon^2.
+    pub fn product_error(self, b: &mut Builder) -> (Lane, Lane) {
+        let Error { relative, absolute } = self.error();
+        let error = Error { relative: relative + 1.0 / 64.0, absolute: absolute + 1.0 / 64.0 };
+        (b.epsilons(error.relative), error.cap(b))
+    }
+}
+
+impl Error {
+    /// The error of ln(1 + w) for w >= 0 with an argument whose relative error is so many epsilon. What that adds is
+    /// w / (1 + w) of it, at most 1 and at most the logarithm.
+    fn with_argument(self, epsilons: f64) -> Error {
+        Error { relative: self.relative + epsilons, absolute: self.absolute + epsilons }
+    }
+
+    /// Factor and scale of the bound, the cap on the scale rounded up.
+    fn bound(self, b: &mut Builder, head: Lane) -> (Lane, Lane) {
+        let factor = b.epsilons(self.relative);
+        let cap = self.cap(b);
+        let magnitude = b.abs(head);
+        (factor, b.min(magnitude, cap))
+    }
+
+    fn cap(self, b: &mut Builder) -> Lane {
+        b.number((self.absolute / self.relative * 64.0).ceil() / 64.0)
     }
 }
 
@@ -96,7 +134,7 @@ fn curved(b: &mut Builder, f: Lane) -> Lane {
 }
 
 /// log(2^k (1 + f)) with the given relative error, where `rest` = ln(1 + f) - f.
-fn combine(b: &mut Builder, base: Base, k: Lane, f: Lane, rest: Lane, epsilons: f64) -> Approx {
+fn combine(b: &mut Builder, base: Base, k: Lane, f: Lane, rest: Lane, error: Error) -> Approx {
     let (head, tail) = match base {
         Base::E => {
             // k L1 is exact, the sum with f is taken apart without loss.
@@ -120,7 +158,8 @@ fn combine(b: &mut Builder, base: Base, k: Lane, f: Lane, rest: Lane, epsilons: 
             (head, b.add(low, tail))
         }
     };
-    Approx { head, tail, factor: b.epsilons(epsilons), scale: b.abs(head) }
+    let (factor, scale) = error.bound(b, head);
+    Approx { head, tail, factor, scale }
 }
 
 /// C (f + rest) as a rounded product and what is left: C1 f + (C1 rest + (C2 f + the product's error)).
@@ -176,7 +215,11 @@ pub fn log1p_core(b: &mut Builder, w: Lane, j: Option<Lane>, more_epsilons: f64)
     let magnitude = b.abs(w);
     let negligible = b.negligible(magnitude);
     let rest = b.select(negligible, zero, rest);
+<<<<<<< HEAD
     combine(b, Base::E, k, f, rest, ERROR_LOG1P + more_epsilons)
+=======
+    combine(b, Base::E, k, f, rest, LOG1P_ERROR.with_argument(more_epsilons))
+>>>>>>> 5e074d4b93bcb458b678e891af630ac3a4ab4e5a
 }
 
 /// A logarithm whose argument has its pole at `pole`: -inf there, inf at inf.

@@ -1,5 +1,6 @@
 //! x^y = 2^(y log2 x), the exponent carried in two parts so that its error is that of the logarithm alone: the relative
-//! error of the result is 1.2 |ln x^y| + 2.5 epsilon.
+//! error of the result is at most
+//! 0.4 |y| + 2.5 epsilon.
 
 use crate::derive::elementary::Approx;
 use crate::derive::elementary::exp;
@@ -11,8 +12,6 @@ use crate::derive::lanes::Builder;
 use crate::derive::lanes::Lane;
 use crate::derive::lanes::Mask;
 
-/// The error of the exponent relative to it, in epsilon: the logarithm's, and what the two parts lose, some epsilon^2.
-const EXPONENT_ERROR: f64 = log::Base::Two.error() + 1.0 / 64.0;
 
 /// log2 x in two parts, -inf where x <= 0; the second part is below an ulp of the first.
 #[derive(Clone, Copy)]
@@ -55,8 +54,11 @@ pub fn exponent(b: &mut Builder, log: Logarithm, y: Lane, y_rest: Option<Lane>) 
     let tail = y_rest.map_or(tail, |rest| b.fma(rest, log.head, tail));
     // Products near 0 may lose their second part to underflow; the result is next to 1 there.
     let least = b.by_precision(1.0 / (1u64 << 30) as f64, 1.0 / (1u64 << 60) as f64);
-    let scale = b.max(magnitude, least);
-    let factor = b.epsilons(EXPONENT_ERROR);
+    let (factor, cap) = log::Base::Two.product_error(b);
+    let size = b.abs(y);
+    let most = b.mul(size, cap);
+    let scale = b.min(magnitude, most);
+    let scale = b.max(scale, least);
     let minus_tail = b.neg(tail);
     let above = b.fma(scale, factor, tail);
     let below = b.fma(scale, factor, minus_tail);

@@ -1,14 +1,14 @@
 //! Sine, cosine and tangent: x = n pi/2 + r with |r| <= pi/4 and a little, then two short polynomials.
 //!
 //! The first step of the reduction, x - n P1, is exact for |x| up to [`limit`]: for n != 0 both are multiples of
-//! 2^-fraction / 2 and the difference is below 1. What the kept parts of pi/2 miss is below the `missed` of [`reduce`]
-//! times |x|. Beyond the limit sine and cosine are [-1, 1] and the tangent is anything.
+//! 2^-fraction / 2 and the difference is below 1. The second rounds. Beyond the limit sine and cosine are [-1, 1] and
+//! the tangent is anything.
 //!
 //! Between consecutive odd multiples of pi/2 the sine is monotone, so the ends and the extrema between them enclose it.
-//! An end's place is the pair (n, sign of r). The sign is right but where |r| is below its error, and there the sine's
-//! own error covers the extremum, as 1 - r^2/2 rounds to 1. The tangent needs the sign itself right, as its pole is
-//! where r = 0 for odd n: its reduction takes one part more, and no number of the format within the limit is nearer to a
-//! multiple of pi/2 than 2^-62 (single: 2^-33; `rounding.py`, section "nearest multiples").
+//! An end's place is the pair (n, sign of r). The sign is right: no number of the format within the limit is nearer to a
+//! multiple of pi/2 than 2^-60.5 (single: 2^-27.9; `rounding.py`, section "nearest multiples"), and what the two parts
+//! of pi/2 miss is below 2^-89 (single: 2^-33). So the tangent's poles, which are where r = 0 for odd n, are counted
+//! exactly, and so are the extrema.
 
 use crate::derive::elementary::Approx;
 use crate::derive::elementary::Format;
@@ -23,7 +23,7 @@ use crate::derive::lanes::Mask;
 /// The error of sine and cosine relative to r and 1, in epsilon: sections "sin" and "cos".
 const WAVE_ERROR: f64 = 1.625;
 /// The relative error of the tangent, in epsilon: section "tan".
-const TANGENT_ERROR: f64 = 8.0;
+const TANGENT_ERROR: f64 = 6.5;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wave {
@@ -39,24 +39,26 @@ fn limit(b: &mut Builder) -> Lane {
 struct Reduced {
     n: Lane,
     r: Lane,
+    rest: Lane,
 }
 
-/// x = n pi/2 + r, with so many parts of pi/2.
-fn reduce(b: &mut Builder, x: Lane, parts: usize) -> Reduced {
+/// x = n pi/2 + (r + rest); rest is what the first two parts of pi/2 miss, r has one rounding.
+fn reduce(b: &mut Builder, x: Lane) -> Reduced {
     let [per_quarter] = b.parts(&tables::TWO_OVER_PI);
     let quotient = b.mul(x, per_quarter);
     let n = b.nearest(quotient);
     let minus_n = b.neg(n);
-    let steps: [Lane; 3] = b.parts(&tables::HALF_PI);
-    let r = steps[..parts].iter().fold(x, |r, &part| b.fma(minus_n, part, r));
-    Reduced { n, r }
+    let [p1, p2, p3] = b.parts(&tables::HALF_PI);
+    let r = b.fma(minus_n, p1, x);
+    let r = b.fma(minus_n, p2, r);
+    Reduced { n, r, rest: b.mul(minus_n, p3) }
 }
 
 /// sin(x + shift pi/2), and x's reduction.
 fn evaluate(b: &mut Builder, wave: Wave, x: Lane) -> (Approx, Reduced) {
     let shift = wave.shift();
-    let reduced = reduce(b, x, 2);
-    let Reduced { n, r } = reduced;
+    let reduced = reduce(b, x);
+    let Reduced { n, r, .. } = reduced;
     let quarter = b.integer_bits(n, shift);
     let odd = odd(b, quarter);
     let one = b.number(1.0);
@@ -145,12 +147,14 @@ pub fn wave_point(b: &mut Builder, wave: Wave, x: Lane) -> Lane {
 
 /// The tangent as a quotient, rounded, and the number of poles at or below the place up to a constant.
 fn tangent(b: &mut Builder, x: Lane) -> (Lane, Lane) {
-    let Reduced { n, r } = reduce(b, x, 3);
+    let Reduced { n, r, rest } = reduce(b, x);
     let (zero, one, half) = (b.zero(), b.number(1.0), b.number(0.5));
     let u = b.mul(r, r);
     let (s, c) = (b.polynomial(&tables::SIN, u), b.polynomial(&tables::COS, u));
+    // The rest counts in the sine alone, and there only where r is so small that the sine's slope is 1.
     let s = b.mul(u, s);
-    let (sine, cosine) = (b.fma(r, s, r), b.fma(u, c, one));
+    let tail = b.fma(r, s, rest);
+    let (sine, cosine) = (b.add(r, tail), b.fma(u, c, one));
     let quarter = b.integer_bits(n, 0.0);
     let odd = odd(b, quarter);
     let minus_cosine = b.neg(cosine);
