@@ -215,11 +215,7 @@ pub fn log1p_core(b: &mut Builder, w: Lane, j: Option<Lane>, more_epsilons: f64)
     let magnitude = b.abs(w);
     let negligible = b.negligible(magnitude);
     let rest = b.select(negligible, zero, rest);
-<<<<<<< HEAD
-    combine(b, Base::E, k, f, rest, ERROR_LOG1P + more_epsilons)
-=======
     combine(b, Base::E, k, f, rest, LOG1P_ERROR.with_argument(more_epsilons))
->>>>>>> 5e074d4b93bcb458b678e891af630ac3a4ab4e5a
 }
 
 /// A logarithm whose argument has its pole at `pole`: -inf there, inf at inf.

@@ -12,7 +12,6 @@ use crate::derive::lanes::Builder;
 use crate::derive::lanes::Lane;
 use crate::derive::lanes::Mask;
 
-
 /// log2 x in two parts, -inf where x <= 0; the second part is below an ulp of the first.
 #[derive(Clone, Copy)]
 pub struct Logarithm {
