@@ -378,7 +378,7 @@ mod tests {
     use super::*;
 
     fn cameras() -> Vec<Camera> {
-        let domain = [Interval::new(-2.0, 2.0).unwrap(); 3];
+        let cells = [Cell { centre: DVec3::ZERO, half: DVec3::splat(2.0) }];
         let mut cameras = Vec::new();
         for projection in [Projection::Perspective, Projection::Orthographic] {
             for (position, fov, size) in [
@@ -389,7 +389,7 @@ mod tests {
                 (Some([-900.0, 30.0, 5000.0]), Some(0.05), (96, 96)),
             ] {
                 let settings = CameraSettings { position, fov, projection: Some(projection), ..Default::default() };
-                cameras.push(Camera::new(&settings, &domain, size).unwrap());
+                cameras.push(Camera::new(&settings, &cells, size).unwrap());
             }
         }
         cameras
