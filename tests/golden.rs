@@ -107,8 +107,7 @@ fn compiled_kernels_and_the_reference_never_contradict() {
         let compiled = picture(&scene, &options, session::backend());
         let reference = picture(&scene, &options, &Interpreter);
         for (pixel, pair) in compiled.certainty.iter().zip(&reference.certainty).enumerate() {
-            let contradiction =
-                matches!(pair, (Certainty::Hit, Certainty::Miss) | (Certainty::Miss, Certainty::Hit));
+            let contradiction = matches!(pair, (Certainty::Hit, Certainty::Miss) | (Certainty::Miss, Certainty::Hit));
             assert!(!contradiction, "{name}, pixel {pixel}: {pair:?}");
         }
     }
