@@ -41,16 +41,16 @@ pub const VECTOR: usize = 16;
 /// one gives code twice as fast, but its time grows with the square of the live values.
 const LIVE_LIMIT: usize = 600;
 
-/// Above this many lane operations it takes over, too: a picture is computed sooner than such a program is allocated well
-/// (66 000 operations: 4 s against 0.5 s).
-const LONG: usize = 20_000;
+/// Above this many lane operations it takes over, too: most pictures are computed sooner than such a program is
+/// allocated well.
+const LONG: usize = 40_000;
 
 /// Programs of more lane operations are refused: they take seconds to compile.
 const MAX_OPERATIONS: usize = 400_000;
 
-/// Bytes of stack that a kernel may take, which runs on threads that it does not know: an eighth of the smallest common
-/// stack of 2 MiB.
-const MAX_FRAME: u32 = 256 << 10;
+/// Bytes of stack that a kernel may take, which runs on threads that it does not know: half of the stack of a thread that
+/// Rust starts.
+const MAX_FRAME: u32 = 1 << 20;
 
 /// The machine code of a program: the function and its constants, with nothing to relocate.
 ///
