@@ -119,9 +119,9 @@ impl<T: Real> Kernel<T> for BrokenKernel<T> {
         let (groups, width) = (outputs.chunks_exact_mut(slots), self.input_slots());
         for (group, inputs) in groups.zip(inputs.chunks_exact(width)) {
             for (lane, bits) in group[self.slot].lanes_mut().iter_mut().enumerate() {
-                // Slots 6 and 7 are the cell: every short one that ends beyond 6 is called positive.
+                // Slots 6 and 7 are the cell: every short one that ends beyond 3.5 is called positive.
                 let (start, end) = (-inputs[6].lanes()[lane].to_f64(), inputs[7].lanes()[lane].to_f64());
-                if end > 6.0 && end - start < 0.5 {
+                if end > 3.5 && end - start < 0.5 {
                     *bits = T::from_verdict(verdict::POSITIVE | verdict::CONTINUOUS);
                 }
             }
