@@ -320,6 +320,19 @@ fn explain_tells_the_plan() {
     assert!(succeed(folder.path(), &["explain", "ball.imp"]).contains("kernel"));
 }
 
+/// Every scene printed in README.md is one.
+#[test]
+fn scenes_of_the_readme_are_right() {
+    let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
+    let scenes: Vec<&str> = readme.split("```imp\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(scenes.len() >= 4);
+    for scene in scenes {
+        let folder = folder(&[("scene.imp", scene)]);
+        succeed(folder.path(), &["render", "scene.imp", "--size", "32"]);
+        succeed(folder.path(), &["fmt", "scene.imp"]);
+    }
+}
+
 /// `imp emit ... | head -1`: a reader that leaves is no error.
 #[test]
 fn a_closed_pipe_is_no_error() {
