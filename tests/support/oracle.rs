@@ -4,7 +4,6 @@ use astro_float::BigFloat;
 use astro_float::Consts;
 use astro_float::RoundingMode;
 use imp::graph::Op;
-use num_rational::BigRational;
 
 const P: usize = 256;
 const RM: RoundingMode = RoundingMode::ToEven;
@@ -92,14 +91,4 @@ pub fn at_most(bound: f64, value: &BigFloat) -> bool {
 
 pub fn at_least(bound: f64, value: &BigFloat) -> bool {
     bound == f64::INFINITY || (bound > f64::NEG_INFINITY && value.cmp(&big(bound)).expect("a value is a number") <= 0)
-}
-
-/// Whether x - y floor(x / y), exactly, lies between the bounds; y is not 0.
-pub fn modulo_within(x: f64, y: f64, lo: f64, hi: f64) -> bool {
-    let exact = |x: f64| BigRational::from_float(x).expect("a finite number");
-    let (x, y) = (exact(x), exact(y));
-    let value = &x - &y * (&x / &y).floor();
-    let above = lo == f64::NEG_INFINITY || (lo.is_finite() && exact(lo) <= value);
-    let below = hi == f64::INFINITY || (hi.is_finite() && value <= exact(hi));
-    above && below
 }
