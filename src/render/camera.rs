@@ -21,7 +21,7 @@ const FIELD_OF_VIEW: f64 = 30.0;
 /// Share of the picture that the domain may fill when the camera is placed automatically.
 const FRAME: f64 = 0.96;
 /// The default three-quarter view: degrees around z and above the horizon.
-const AZIMUTH: f64 = 32.0;
+const AZIMUTH: f64 = 24.0;
 const ELEVATION: f64 = 24.0;
 /// The least component along K, relative to the direction's length, that a tile's rays may have.
 const LEAST_SLANT: f64 = 0.3;
