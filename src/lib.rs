@@ -7,7 +7,7 @@
 //! | 0 | [`diagnostic`], [`interval`] |
 //! | 1 | [`graph`], [`syntax`] |
 //! | 2 | [`program`], [`passes`] |
-//! | 3 | [`derive`] |
+//! | 3 | [`mod@derive`] |
 //! | 4 | [`kernel`] |
 //! | 5 | [`interpret`], [`codegen`], [`render`] |
 //! | 6 | [`session`] |

@@ -77,7 +77,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
 }
 
 /// `imp explain`: the plan of the picture.
-pub fn explain(file: &PathBuf, picture: &PictureArguments) -> Result<(), Failure> {
+pub fn explain(file: &Path, picture: &PictureArguments) -> Result<(), Failure> {
     let (artefact, scene) = text::scene(file, &picture.settings)?;
     match Renderer::new(&scene, &picture.options(), session::backend()) {
         Ok(renderer) => files::print(renderer.plan().to_string().as_bytes()),
@@ -86,7 +86,7 @@ pub fn explain(file: &PathBuf, picture: &PictureArguments) -> Result<(), Failure
 }
 
 /// `imp verify`: replays a certificate with the reference interpreter alone.
-pub fn verify(file: &PathBuf, certificate: &Path, settings: &[Override]) -> Result<(), Failure> {
+pub fn verify(file: &Path, certificate: &Path, settings: &[Override]) -> Result<(), Failure> {
     let (artefact, scene) = text::scene(file, settings)?;
     let certificate = Certificate::from_bytes(&session::bytes(certificate)?)?;
     let report = watched(None, |control| render::verify(&scene, &certificate, &Interpreter, control));

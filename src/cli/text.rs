@@ -1,5 +1,6 @@
 //! The commands that read scenes and print or rewrite text: `check`, `fmt` and `emit`.
 
+use std::path::Path;
 use std::path::PathBuf;
 
 use crate::cli::arguments::EmitArguments;
@@ -42,7 +43,7 @@ fn contents(scene: &Scene) -> String {
 ///
 /// # Errors
 /// The messages of the stage that failed.
-pub fn scene(path: &PathBuf, overrides: &[Override]) -> Result<(Artefact, Scene), Failure> {
+pub fn scene(path: &Path, overrides: &[Override]) -> Result<(Artefact, Scene), Failure> {
     let mut artefact = session::compile(Source::File(path), overrides);
     match artefact.scene.take() {
         Some(scene) => {
@@ -62,7 +63,7 @@ pub fn format(paths: &[PathBuf], check: bool) -> Result<(), Failure> {
     failure.into_result()
 }
 
-fn format_file(path: &PathBuf, check: bool) -> Result<(), Failure> {
+fn format_file(path: &Path, check: bool) -> Result<(), Failure> {
     let (sources, file) = session::read(path).map_err(|(sources, found)| Failure::new(sources, vec![found]))?;
     let text = sources.get(file).text.clone();
     let formatted = match syntax::format::format(file, &text) {

@@ -1,6 +1,6 @@
 //! What a parsed file means: names, kinds, modules and the standard library; AST to graph and [`scene::Scene`].
 //!
-//! [`resolve`] and [`resolve_expression`] are the ways in. In the order of the work:
+//! [`resolve()`] and [`resolve_expression`] are the ways in. In the order of the work:
 //!
 //! - `import`, `stdlib`, `names`, `scan`: all files, what each name means, and an order of evaluation;
 //! - `values`, `lower`, `algebra`, `call`, `exponent`: expressions to graph values, with every function inlined;

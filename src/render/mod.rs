@@ -1,7 +1,7 @@
 //! The packet ray caster and the plotter of plane scenes: from a scene and options to a picture that says of every
 //! pixel what is proved.
 //!
-//! Stages of a space scene, tile by tile: [`march`] moves beams of pixels front to back until each is refuted or in a
+//! Stages of a space scene, tile by tile: `march` moves beams of pixels front to back until each is refuted or in a
 //! cell where the field is monotone along the rays, `solve` finds the zeros there, `finish` takes single rays through
 //! everything else, `shade` turns hits into colours. `plane` decides pixels as boxes.
 
@@ -97,8 +97,8 @@ pub struct Renderer {
 }
 
 enum Engine {
-    Space(space::Space),
-    Plane(plane::Plane),
+    Space(Box<space::Space>),
+    Plane(Box<plane::Plane>),
 }
 
 impl Renderer {
@@ -117,8 +117,8 @@ impl Renderer {
             }
         };
         let engine = match scene.dimension() {
-            2 => Engine::Plane(plane::Plane::new(scene, options, backend)?),
-            _ => Engine::Space(space::Space::new(scene, options, backend)?),
+            2 => Engine::Plane(Box::new(plane::Plane::new(scene, options, backend)?)),
+            _ => Engine::Space(Box::new(space::Space::new(scene, options, backend)?)),
         };
         Ok(Self { engine, threads })
     }

@@ -13,7 +13,7 @@ pub enum Enclosures {
     Interval,
     /// AF1 forms intersected with it, one noise symbol along the ray and two across.
     Affine,
-    /// One of the two, by counting operations ([`crate::render::plan`]).
+    /// One of the two, by counting operations (`plan`).
     #[default]
     Auto,
 }

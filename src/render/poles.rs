@@ -30,10 +30,10 @@ pub fn numerator(graph: &mut Graph, f: Value) -> Option<Value> {
             Op::PowInt(n) => n < 0,
             _ => false,
         };
-        if quotient || operands.iter().any(|operand| operand.d.is_some()) {
-            if let Some(fraction) = combine(graph, node.op, &operands) {
-                fractions[index] = fraction;
-            }
+        if (quotient || operands.iter().any(|operand| operand.d.is_some()))
+            && let Some(fraction) = combine(graph, node.op, &operands)
+        {
+            fractions[index] = fraction;
         }
     }
     let Fraction { n, d } = fractions[f.index()];

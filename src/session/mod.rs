@@ -1,4 +1,4 @@
-//! Source to scene in one function, [`compile`], which keeps every stage for `imp emit`; and [`backend`], which makes
+//! Source to scene in one function, [`compile`], which keeps every stage for `imp emit`; and [`backend()`], which makes
 //! kernels of the scene's formulas.
 
 mod backend;
