@@ -396,6 +396,29 @@ fn masks_follow_the_domains() {
     }
 }
 
+/// The angle's extremes over boxes that touch the origin with a corner or a side.
+#[test]
+fn angles_of_boxes_at_the_origin_are_tight() {
+    let program = spec(Op::Atan2, Arithmetic::Interval, Rounding::Outward).lower(Precision::Double);
+    let pi = std::f64::consts::PI;
+    let table = [
+        ((0.0, 1.0), (0.0, 1.0), 0.0, pi / 2.0),
+        ((0.0, 1.0), (-1.0, 0.0), pi / 2.0, pi),
+        ((-1.0, 0.0), (0.0, 1.0), -pi / 2.0, 0.0),
+        ((-1.0, 0.0), (-1.0, 0.0), -pi, pi),
+        ((0.0, 1.0), (-1.0, 1.0), 0.0, pi),
+        ((-1.0, 1.0), (0.0, 1.0), -pi / 2.0, pi / 2.0),
+        ((0.0, 0.0), (0.0, 1.0), 0.0, 0.0),
+        ((0.0, 0.0), (-1.0, -0.5), pi, pi),
+        ((-1.0, 1.0), (-1.0, 1.0), -pi, pi),
+    ];
+    for (y, x, least, greatest) in table {
+        let (lo, hi, _) = enclose::<f64>(&program, &[y, x], Mode::Up);
+        let close = lo <= least && least - lo < 4e-15 && greatest <= hi && hi - greatest < 4e-15;
+        assert!(close, "atan2 of {y:?}, {x:?}: [{lo}, {hi}]");
+    }
+}
+
 /// A number of a kind that breaks arithmetic.
 fn odd_number(rng: &mut Rng) -> f64 {
     match rng.u32(0..8) {

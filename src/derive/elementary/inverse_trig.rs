@@ -212,9 +212,13 @@ pub fn atan2(b: &mut Builder, y: Ends, x: Ends) -> Applied {
     let x_max = b.select(below, x.hi, x_lo);
     let right = b.less_equal(zero, x_max);
     let y_max = b.select(right, y.hi, y_lo);
-    // The smallest: mirrored at the x axis.
+    // The smallest: mirrored at the x axis. A right side on the y axis has it at the top, so that a corner at the origin
+    // does not count.
     let x_min = b.select(above, x.hi, x_lo);
-    let right = b.less_equal(zero, x_min);
+    let (right, on_axis) = (b.less(zero, x_min), b.equal(zero, x_min));
+    let not_above = b.not(above);
+    let on_axis = b.and(on_axis, not_above);
+    let right = b.or(right, on_axis);
     let y_min = b.select(right, y_lo, y.hi);
     let (largest, smallest) = (angle(b, y_max, x_max), angle(b, y_min, x_min));
     let negative = b.less(y_max, zero);
@@ -225,7 +229,6 @@ pub fn atan2(b: &mut Builder, y: Ends, x: Ends) -> Applied {
     // Points with x < 0 on both sides of the cut, which itself belongs to the upper side.
     let reaches_left = b.less(zero, x.nlo);
     let not_below = b.not(below);
-    let not_above = b.not(above);
     let both_sides = b.and(not_below, not_above);
     let cut = b.and(reaches_left, both_sides);
     let pi = b.constant_ends(-std::f64::consts::PI.next_up(), std::f64::consts::PI.next_up());
