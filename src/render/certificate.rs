@@ -10,14 +10,17 @@ use std::io::Write as _;
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
+use glam::DVec3;
 use serde::Deserialize;
 use serde::Serialize;
 
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::program::scene::Parameter;
+use crate::program::scene::Projection;
 use crate::program::scene::Scene;
-use crate::render::march::Refuted;
+use crate::render::camera::Camera;
+use crate::render::context::Refuted;
 use crate::render::options::Enclosures;
 use crate::render::options::Options;
 use crate::render::outcome::Outcome;
@@ -34,12 +37,40 @@ const MAX_BYTES: u64 = 1 << 32;
 pub struct Certificate {
     /// Of the scene and its parameters.
     pub(super) fingerprint: u64,
-    pub(super) width: u32,
-    pub(super) height: u32,
+    /// Where the rays come from: what the scene leaves open is chosen by what its shapes need.
+    pub(super) camera: View,
     pub(super) enclosures: Enclosures,
     pub(super) counts: Counts,
     /// By tile, then by shape.
     pub(super) tiles: Vec<Vec<ShapeProof>>,
+}
+
+/// A camera in numbers: the eye, then the directions of view, of one pixel to the right and of one upwards.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct View {
+    pub width: u32,
+    pub height: u32,
+    pub parallel: bool,
+    pub frame: [[f64; 3]; 4],
+}
+
+impl View {
+    fn new(camera: &Camera) -> Self {
+        let Camera { projection, position, forward, right, up, width, height } = *camera;
+        let frame = [position, forward, right, up].map(Into::into);
+        Self { width, height, parallel: projection == Projection::Orthographic, frame }
+    }
+
+    /// The camera; `None` if the numbers make none.
+    pub fn camera(self) -> Option<Camera> {
+        let Self { width, height, parallel, frame } = self;
+        let projection = if parallel { Projection::Orthographic } else { Projection::Perspective };
+        let [position, forward, right, up] = frame.map(DVec3::from);
+        let fits = |v: DVec3| v.is_finite() && v.length() < 1e100;
+        let sees = (0.5..2.0).contains(&forward.length()) && right.length() > 1e-100 && up.length() > 1e-100;
+        let camera = Camera { projection, position, forward, right, up, width, height };
+        (sees && frame.map(DVec3::from).into_iter().all(fits)).then_some(camera)
+    }
 }
 
 /// How many pixels are what.
@@ -71,7 +102,7 @@ impl Certificate {
     /// Collects what the tiles recorded: for each tile and shape the cover and the outcomes of its pixels.
     pub(super) fn new(
         (scene, parameters): (&Scene, &[Parameter]),
-        options: &Options,
+        (options, camera): (&Options, &Camera),
         stats: &Stats,
         tiles: Vec<Vec<(Vec<Refuted>, Vec<Outcome>)>>,
     ) -> Self {
@@ -94,8 +125,7 @@ impl Certificate {
         };
         Self {
             fingerprint: fingerprint(scene, parameters),
-            width: options.width,
-            height: options.height,
+            camera: View::new(camera),
             enclosures: options.enclosures,
             counts: Counts { proved: stats.proved, misses: stats.misses, unknown: stats.unknown },
             tiles: tiles.into_iter().map(|shapes| shapes.into_iter().map(proof).collect()).collect(),

@@ -5,22 +5,22 @@
 //! finest level are absorbed into a stretch; the stretch is a proved hit if the field is continuous on it and has
 //! proved opposite signs before and after it, and undecided otherwise. Nothing is ever passed over.
 
+mod evidence;
+
 use crate::kernel::verdict;
 use crate::render::batch::Batch;
 use crate::render::batch::Program;
-use crate::render::march::Context;
+use crate::render::context::Context;
+use crate::render::context::Part;
+use crate::render::context::Pixel;
+use crate::render::context::Refuted;
+use crate::render::context::Settled;
+use crate::render::context::Single;
+use crate::render::context::Test;
+use crate::render::context::opposite;
+use crate::render::context::place;
+use crate::render::finish::evidence::Evidence;
 use crate::render::march::GROUPS;
-use crate::render::march::Part;
-use crate::render::march::Pixel;
-use crate::render::march::Refuted;
-use crate::render::march::Settled;
-use crate::render::march::Single;
-use crate::render::march::Test;
-use crate::render::march::opposite;
-use crate::render::march::place;
-use crate::render::march::proves_condition;
-use crate::render::march::refutes_condition;
-use crate::render::march::sign;
 use crate::render::options::Stop;
 use crate::render::outcome::Outcome;
 use crate::render::outcome::Surface;
@@ -85,25 +85,6 @@ struct Walker {
     fallback: Option<[f64; 2]>,
     spent: u32,
     rests: u8,
-}
-
-/// What the kernels say of a piece.
-#[derive(Debug, Clone, Copy)]
-struct Evidence {
-    /// The sign of the field on all of the piece, or 0.
-    sign: u32,
-    empty: bool,
-    continuous: bool,
-    bounded: bool,
-    /// The width of the field's enclosure.
-    width: f64,
-    /// The sign of the slope, or 0.
-    growth: u32,
-    condition: bool,
-    no_condition: bool,
-    /// The numerator of a field with poles has no zero.
-    no_zero: bool,
-    test: Test,
 }
 
 /// What the stages hand to each other.
@@ -260,91 +241,6 @@ impl<'a> Finisher<'a> {
             steps.push(step);
         }
         steps
-    }
-
-    fn load(batch: &mut Batch<f64>, lane: usize, walker: &Walker, p: f64, q: f64) {
-        for (slot, &component) in walker.ray.iter().enumerate() {
-            batch.set_range(lane, slot, component, component);
-        }
-        batch.set_range(lane, 3, p, q);
-    }
-
-    fn pieces(&mut self, walkers: &[Walker]) -> Vec<Evidence> {
-        for (lane, walker) in walkers.iter().enumerate() {
-            Self::load(&mut self.piece, lane, walker, walker.p, walker.q);
-            let middle = (0.5 * (walker.p + walker.q)).clamp(walker.p, walker.q);
-            self.piece.set_range(lane, 4, middle, middle);
-        }
-        self.piece.run(walkers.len());
-        (0..walkers.len()).map(|lane| self.evidence(lane)).collect()
-    }
-
-    fn evidence(&self, lane: usize) -> Evidence {
-        let bits = self.piece.bits(lane, 2);
-        let width = self.piece.get(lane, 0) + self.piece.get(lane, 1);
-        let continuous = bits & verdict::CONTINUOUS != 0;
-        let natural = sign(bits);
-        let (centred, growth) =
-            if continuous { (sign(self.piece.bits(lane, 4)), sign(self.piece.bits(lane, 3))) } else { (0, 0) };
-        let condition = if self.context.condition { self.piece.bits(lane, 5) } else { !verdict::REFUTED };
-        let numerator = 5 + usize::from(self.context.condition);
-        let no_zero = numerator < self.piece.output_slots() && sign(self.piece.bits(lane, numerator)) != 0;
-        Evidence {
-            sign: if natural != 0 { natural } else { centred },
-            empty: bits & verdict::EMPTY != 0,
-            continuous,
-            bounded: width < f64::INFINITY,
-            width,
-            growth,
-            condition: !self.context.condition || proves_condition(condition),
-            no_condition: refutes_condition(condition),
-            no_zero,
-            test: match (natural, centred) {
-                (0, 0) if no_zero => Test::Numerator,
-                (0, 1..) => Test::Centred,
-                _ => Test::Natural,
-            },
-        }
-    }
-
-    /// For each walker that enters the domain of a solid here: whether it is proved to enter inside the solid. The
-    /// kernel knows no domain, since the piece straddles its face.
-    fn faces(&mut self, walkers: &[Walker]) -> Vec<bool> {
-        let mut inside = vec![false; walkers.len()];
-        let entering: Vec<usize> = (0..walkers.len()).filter(|&index| walkers[index].entering).collect();
-        for (lane, &index) in entering.iter().enumerate() {
-            let walker = &walkers[index];
-            Self::load(&mut self.face, lane, walker, walker.p, walker.q);
-        }
-        self.face.run(entering.len());
-        for (lane, &index) in entering.iter().enumerate() {
-            const INSIDE: u32 = verdict::NEGATIVE | verdict::CONTINUOUS;
-            let condition = !self.context.condition || proves_condition(self.face.bits(lane, 1));
-            inside[index] = self.face.bits(lane, 0) & INSIDE == INSIDE && condition;
-        }
-        inside
-    }
-
-    /// The proved signs at both ends of each piece that is inside the domain and undecided.
-    fn signs(&mut self, walkers: &[Walker], pieces: &[Evidence]) -> Vec<[u32; 2]> {
-        let mut lanes = Vec::with_capacity(2 * walkers.len());
-        for (index, (walker, piece)) in walkers.iter().zip(pieces).enumerate() {
-            if self.is_refuted(piece) || !Self::is_inner(walker) {
-                continue;
-            }
-            for (end, t) in [walker.p, walker.q].into_iter().enumerate() {
-                if end == 1 || walker.sign == 0 {
-                    Self::load(&mut self.ends, lanes.len(), walker, t, t);
-                    lanes.push((index, end));
-                }
-            }
-        }
-        self.ends.run(lanes.len());
-        let mut signs: Vec<[u32; 2]> = walkers.iter().map(|walker| [walker.sign, 0]).collect();
-        for (lane, (index, end)) in lanes.into_iter().enumerate() {
-            signs[index][end] = sign(self.ends.bits(lane, 0));
-        }
-        signs
     }
 
     /// Whether all of the piece is proved to be in the domain, but for what the kernels have to say.

@@ -8,8 +8,10 @@
 mod batch;
 mod camera;
 mod certificate;
+mod context;
 mod extent;
 mod finish;
+mod geometry;
 mod grid;
 pub mod image;
 mod ink;
@@ -38,6 +40,7 @@ use crate::kernel::Backend;
 use crate::program::scene::Parameter;
 use crate::program::scene::Scene;
 
+pub use camera::Ray;
 pub use certificate::Certificate;
 pub use options::Enclosures;
 pub use options::Layers;
@@ -128,6 +131,15 @@ impl Renderer {
         match &self.engine {
             Engine::Space(space) => &space.plan,
             Engine::Plane(plane) => &plane.plan,
+        }
+    }
+
+    /// The exact line o + t d of a pixel, to which everything proved of it refers; `None` in a plane scene or outside the
+    /// picture.
+    pub fn ray(&self, x: u32, y: u32) -> Option<Ray> {
+        match &self.engine {
+            Engine::Space(space) => space.ray(x, y),
+            Engine::Plane(_) => None,
         }
     }
 

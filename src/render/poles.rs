@@ -14,8 +14,8 @@ struct Fraction {
     d: Option<Value>,
 }
 
-/// The numerator of `f` over a common denominator of its sums, products, quotients and integer powers; `None` if no
-/// quotient by something that varies is among them. Other operations are taken as they are, quotients inside included.
+/// The numerator of `f` over a common denominator of its sums, products, quotients, powers and tangents; `None` if
+/// nothing among them has a pole. Other operations are taken as they are, quotients inside included.
 pub fn numerator(graph: &mut Graph, f: Value) -> Option<Value> {
     let needed = graph.reachable(&[f]);
     let mut fractions: Vec<Fraction> = (0..=f.0).map(|index| Fraction { n: Value(index), d: None }).collect();
@@ -28,6 +28,8 @@ pub fn numerator(graph: &mut Graph, f: Value) -> Option<Value> {
         let quotient = match node.op {
             Op::Div => graph.as_constant(node.operands()[1]).is_none(),
             Op::PowInt(n) => n < 0,
+            Op::PowRatio(p, _) => p < 0,
+            Op::Tan => true,
             _ => false,
         };
         if (quotient || operands.iter().any(|operand| operand.d.is_some()))
@@ -76,6 +78,13 @@ fn combine(graph: &mut Graph, op: Op, operands: &[Fraction]) -> Option<Fraction>
             let one = graph.int(1);
             let d = a.d.map(|d| graph.unary(Op::PowInt(exponent), d));
             if power < 0 { Fraction { n: d.unwrap_or(one), d: Some(n) } } else { Fraction { n, d } }
+        }
+        (Op::PowRatio(power, root), &[Fraction { n, d: None }]) if power < 0 => {
+            let d = graph.unary(Op::PowRatio(power.checked_neg()?, root), n);
+            Fraction { n: graph.int(1), d: Some(d) }
+        }
+        (Op::Tan, &[Fraction { n, d: None }]) => {
+            Fraction { n: graph.unary(Op::Sin, n), d: Some(graph.unary(Op::Cos, n)) }
         }
         _ => return None,
     })

@@ -6,12 +6,12 @@
 use crate::kernel::verdict;
 use crate::render::batch::Batch;
 use crate::render::batch::Program;
-use crate::render::march::Context;
+use crate::render::context::Context;
+use crate::render::context::Settled;
+use crate::render::context::opposite;
+use crate::render::context::place;
+use crate::render::context::sign;
 use crate::render::march::GROUPS;
-use crate::render::march::Settled;
-use crate::render::march::opposite;
-use crate::render::march::place;
-use crate::render::march::sign;
 use crate::render::options::Stop;
 
 /// Steps of Newton's method at most. Cells that are settled by their slope are short against the curvature, so that

@@ -11,24 +11,20 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::kernel::Backend;
 use crate::program::scene::Parameter;
-use crate::program::scene::Projection;
 use crate::program::scene::Scene;
 use crate::program::scene::Shape;
 use crate::program::scene::ShapeKind;
 use crate::render::Control;
 use crate::render::batch::Program;
-use crate::render::camera::Camera;
 use crate::render::camera::Frame;
 use crate::render::camera::Ray;
 use crate::render::camera::Tile;
 use crate::render::certificate::Certificate;
-use crate::render::extent::extent;
-use crate::render::grid::Grid;
-use crate::render::march::Context;
-use crate::render::march::Refuted;
-use crate::render::march::pixel;
+use crate::render::context::Refuted;
+use crate::render::context::pixel;
+use crate::render::geometry::Geometry;
+use crate::render::geometry::shared_inputs;
 use crate::render::options::Options;
-use crate::render::options::Stop;
 use crate::render::outcome::Outcome;
 use crate::render::picture::Certainty;
 use crate::render::picture::Depth;
@@ -38,142 +34,15 @@ use crate::render::plan::arithmetic;
 use crate::render::programs::Compiled;
 use crate::render::programs::Format;
 use crate::render::programs::Orders;
-use crate::render::programs::Reach;
 use crate::render::shade::Gradients;
 use crate::render::shade::Shading;
 use crate::render::shade::Spot;
 use crate::render::stats::Evaluations;
 use crate::render::stats::Stats;
 use crate::render::stats::median;
-use crate::render::tile::Effort;
 use crate::render::tile::Traced;
 use crate::render::tile::Tracer;
 use crate::render::tile::trace;
-
-/// The deepest cells of beams. Finer ones are left to single rays, whose double precision they would need.
-const LEAF: u8 = 12;
-
-/// Pixels along a side of the largest picture.
-const MAX_SIDE: u32 = 1 << 16;
-
-/// Where the rays of a picture are and how far they go; what rendering and verification have in common.
-pub struct Geometry {
-    pub camera: Camera,
-    pub tiles: Vec<Tile>,
-    pub grid: Grid,
-    pub reach: Reach,
-    pub effort: Effort,
-}
-
-impl Geometry {
-    /// # Errors
-    /// If the domain is unbounded (`E0502`), the camera is impossible (`E0501`) or the picture has no pixels or
-    /// too many (`E0503`).
-    pub fn new(scene: &Scene, options: &Options) -> Result<Self, Diagnostic> {
-        check(scene, options)?;
-        let (width, height) = (options.width, options.height);
-        let camera = Camera::new(&scene.view.camera, &extent(scene), (width, height))?;
-        let tiles = camera.tiles();
-        let slab = scene.domain.iter().map(|range| range.width()).fold(0.0, f64::max);
-        let corner = |sign: f64, unit: glam::DVec3, pixels: u32| sign * 0.5 * f64::from(pixels) * unit;
-        let spread = match camera.projection {
-            Projection::Perspective => glam::DVec3::ZERO,
-            Projection::Orthographic => corner(1.0, camera.right, width).abs() + corner(1.0, camera.up, height).abs(),
-        };
-        let origin = (camera.position.abs() + spread).max_element();
-        let far = scene.domain.iter().map(|range| range.mag()).fold(0.0, f64::max);
-        let end = origin + far;
-        let power = |x: f64| x.log2().ceil().exp2();
-        let axis = camera.forward.abs().max_position();
-        let grid = Grid::new(slab, end);
-        let reach = Reach {
-            projection: camera.projection,
-            origin: power(origin.max(f64::MIN_POSITIVE)),
-            end: power(end + 4.0 * grid.unit(0)),
-            axis,
-        };
-        let depth = match options.stop {
-            Stop::Depth(depth) => depth.min(grid.deepest().into()) as u8,
-            // Eq. 6.1: the depth at which a cell of the longest ray is no longer than epsilon.
-            Stop::Epsilon(length) => grid.depth_of(length / longest(&camera, &tiles)),
-            Stop::Tolerance(_) => grid.deepest(),
-        };
-        let single = match options.precision {
-            Precision::Single => grid.deepest_single(),
-            Precision::Double => grid.deepest(),
-        };
-        let effort = Effort {
-            stop: options.stop,
-            depth,
-            leaf: LEAF.min(single),
-            poles: options.poles,
-            certificate: options.certificate,
-        };
-        Ok(Self { camera, tiles, grid, reach, effort })
-    }
-
-    /// What the stages of a tile share.
-    pub fn context<'a>(&'a self, frame: &'a Frame, scene: &'a Scene, shape: &Shape) -> Context<'a> {
-        let axis = frame.tile.axis;
-        let perspective = self.camera.projection == Projection::Perspective;
-        let pitch = self.camera.right.length().max(self.camera.up.length());
-        Context {
-            frame,
-            grid: &self.grid,
-            domain: &scene.domain,
-            region: shape.kind == ShapeKind::Region,
-            condition: shape.condition.is_some(),
-            leaf: self.effort.leaf,
-            pitch: if perspective { pitch / self.camera.forward[axis].abs().max(0.25) } else { pitch },
-            perspective,
-        }
-    }
-}
-
-/// The inputs that all rays of a picture share: the eye, or the direction of parallel rays, which have one dominant
-/// axis.
-pub fn shared_inputs(geometry: &Geometry) -> [(&'static str, f64); 3] {
-    let ray = Frame::new(&geometry.camera, geometry.tiles[0]).ray(0, 0);
-    let values = match geometry.camera.projection {
-        Projection::Perspective => ray.origin,
-        Projection::Orthographic => ray.direction,
-    };
-    let names = geometry.reach.shared();
-    std::array::from_fn(|c| (names[c], values[c]))
-}
-
-/// Refuses what cannot be drawn, in space or plane.
-///
-/// # Errors
-/// If the domain is unbounded (`E0502`), or the picture has no pixels or too many (`E0503`).
-pub fn check(scene: &Scene, options: &Options) -> Result<(), Diagnostic> {
-    if scene.domain.iter().any(|range| !range.is_bounded() || range.is_singleton()) {
-        return Err(Diagnostic::error(code::NO_EXTENT, "the domain has no extent or no bounds")
-            .help("give every coordinate a range such as `[-2, 2]`"));
-    }
-    let (width, height) = (options.width, options.height);
-    if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
-        return Err(Diagnostic::error(
-            code::PICTURE_SIZE,
-            format!("a picture of {width}x{height} pixels cannot be drawn"),
-        )
-        .help(format!("write a size such as `512x512`; neither side may exceed {MAX_SIDE} pixels")));
-    }
-    Ok(())
-}
-
-/// The longest direction of all rays.
-fn longest(camera: &Camera, tiles: &[Tile]) -> f64 {
-    let mut longest = 1.0f64;
-    for &tile in tiles {
-        let frame = Frame::new(camera, tile);
-        let (width, height) = frame.size();
-        for (x, y) in [(0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1)] {
-            longest = longest.max(glam::DVec3::from(frame.ray(x, y).direction).length());
-        }
-    }
-    longest
-}
 
 /// A shape's kernels; beams march in `T`.
 struct ShapeKernels<T: Format> {
@@ -292,6 +161,14 @@ impl Space {
         plan.describe(scene, options);
         let compile_ms = 1e3 * start.elapsed().as_secs_f64();
         Ok(Self { scene: scene.clone(), options: options.clone(), geometry, kernels, plan, compile_ms })
+    }
+
+    /// The line of a pixel.
+    pub fn ray(&self, x: u32, y: u32) -> Option<Ray> {
+        let camera = &self.geometry.camera;
+        let holds = |tile: &&Tile| (tile.x..=tile.last_x).contains(&x) && (tile.y..=tile.last_y).contains(&y);
+        let tile = *self.geometry.tiles.iter().find(holds)?;
+        Some(Frame::new(camera, tile).ray(x - tile.x, y - tile.y))
     }
 
     /// Renders with the given values of the scene's parameters, in the scene's order.
@@ -512,8 +389,12 @@ impl<T: Format> Job<'_, T> {
         picture.stats.misses = count(Certainty::Miss);
         picture.stats.unknown = count(Certainty::Unknown) + count(Certainty::Unverified);
         if options.certificate {
-            picture.certificate =
-                Some(Certificate::new((&self.space.scene, self.parameters), options, &picture.stats, covers));
+            picture.certificate = Some(Certificate::new(
+                (&self.space.scene, self.parameters),
+                (options, &geometry.camera),
+                &picture.stats,
+                covers,
+            ));
         }
         picture
     }

@@ -3,11 +3,11 @@
 use crate::kernel::Real;
 use crate::render::batch::Program;
 use crate::render::camera::TILE;
+use crate::render::context::Context;
+use crate::render::context::Refuted;
 use crate::render::finish::Finisher;
 use crate::render::finish::Onward;
-use crate::render::march::Context;
 use crate::render::march::March;
-use crate::render::march::Refuted;
 use crate::render::options::Stop;
 use crate::render::outcome::Outcome;
 use crate::render::outcome::Surface;
@@ -42,7 +42,7 @@ pub struct Effort {
 
 /// What a tile knows of one shape.
 pub struct Traced {
-    /// By [`pixel`](crate::render::march::pixel) of the tile; empty if every pixel is a proved miss.
+    /// By [`pixel`](crate::render::context::pixel) of the tile; empty if every pixel is a proved miss.
     pub outcomes: Vec<Outcome>,
     /// The refuted cover, if a certificate is wanted.
     pub cover: Vec<Refuted>,

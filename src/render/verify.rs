@@ -21,21 +21,22 @@ use crate::render::certificate::Claim;
 use crate::render::certificate::Counts;
 use crate::render::certificate::ShapeProof;
 use crate::render::certificate::fingerprint;
-use crate::render::march::Context;
-use crate::render::march::Part;
-use crate::render::march::Refuted;
-use crate::render::march::Test;
-use crate::render::march::opposite;
-use crate::render::march::proves_condition;
-use crate::render::march::refutes_condition;
-use crate::render::march::sign;
+use crate::render::context::Context;
+use crate::render::context::Part;
+use crate::render::context::Refuted;
+use crate::render::context::Test;
+use crate::render::context::opposite;
+use crate::render::context::proves_condition;
+use crate::render::context::refutes_condition;
+use crate::render::context::sign;
+use crate::render::geometry::Geometry;
+use crate::render::geometry::check;
+use crate::render::geometry::shared_inputs;
 use crate::render::options::Options;
 use crate::render::outcome::Surface;
 use crate::render::plan::arithmetic;
 use crate::render::programs::Compiled;
 use crate::render::programs::Orders;
-use crate::render::space::Geometry;
-use crate::render::space::shared_inputs;
 
 /// How often a recorded cell may be halved to be refuted: kernels may be tighter than the reference here and there.
 const HALVINGS: u32 = 4;
@@ -65,9 +66,11 @@ pub fn verify(
         return Err(Diagnostic::error(code::OTHER_SCENE, "the certificate belongs to another scene")
             .help("verify it with the file and the parameters that it was made with"));
     }
-    let Certificate { width, height, enclosures, .. } = *certificate;
-    let options = Options { width, height, enclosures, ..Options::default() };
-    let geometry = Geometry::new(scene, &options)?;
+    let enclosures = certificate.enclosures;
+    let camera = certificate.camera.camera().ok_or_else(|| rejected("its camera sees nothing".to_owned()))?;
+    let options = Options { width: camera.width, height: camera.height, enclosures, ..Options::default() };
+    check(scene, &options)?;
+    let geometry = Geometry::of_camera(scene, &options, camera);
     if certificate.tiles.len() != geometry.tiles.len() {
         return Err(rejected(format!("it has {} tiles of {}", certificate.tiles.len(), geometry.tiles.len())));
     }

@@ -119,9 +119,10 @@ impl<T: Real> Kernel<T> for BrokenKernel<T> {
         let (groups, width) = (outputs.chunks_exact_mut(slots), self.input_slots());
         for (group, inputs) in groups.zip(inputs.chunks_exact(width)) {
             for (lane, bits) in group[self.slot].lanes_mut().iter_mut().enumerate() {
-                // Slots 6 and 7 are the cell: every short one that ends beyond 3.5 is called positive.
+                // Slots 6 and 7 are the cell: every short one that ends beyond 6.9 is called positive. The sphere's
+                // nearest point is at 7.
                 let (start, end) = (-inputs[6].lanes()[lane].to_f64(), inputs[7].lanes()[lane].to_f64());
-                if end > 3.5 && end - start < 0.5 {
+                if end > 6.9 && end - start < 0.5 {
                     *bits = T::from_verdict(verdict::POSITIVE | verdict::CONTINUOUS);
                 }
             }
@@ -146,7 +147,8 @@ impl Backend for Broken {
 
 #[test]
 fn a_broken_kernel_is_found_out() {
-    let scene = scene(ShapeKind::Equation, sphere);
+    let mut scene = scene(ShapeKind::Equation, sphere);
+    scene.view.camera.position = Some([0.0, -8.0, 0.0]);
     let options = Options { certificate: true, ..options(40) };
     let sound = draw(&scene, &options);
     let broken = render(&scene, &options, &Broken, &Control::default()).unwrap();

@@ -3,4 +3,5 @@
 mod certificate;
 mod plane;
 mod scenes;
+mod soundness;
 mod space;
