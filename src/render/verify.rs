@@ -38,7 +38,10 @@ use crate::render::plan::arithmetic;
 use crate::render::programs::Compiled;
 use crate::render::programs::Orders;
 
-/// How often a recorded cell may be halved to be refuted: kernels may be tighter than the reference here and there.
+/// How often a recorded cell may be split to be refuted: kernels may be tighter than the reference here and there.
+const SPLITS: u32 = 8;
+
+/// How often a bracket may be halved to be found continuous.
 const HALVINGS: u32 = 4;
 
 /// What was verified.
@@ -188,6 +191,9 @@ struct Checker<'a> {
 /// The rays of a block: lower and upper ends of what varies.
 type Hull = ([f64; 3], [f64; 3]);
 
+/// A block of 2^level by 2^level pixels: left, top, level.
+type Block = (u32, u32, u8);
+
 /// The answers over a box.
 #[derive(Debug, Clone, Copy)]
 struct Answers {
@@ -322,20 +328,47 @@ impl Checker<'_> {
             || (answers.beam | answers.field | centred) & self.context.refuting() != 0
     }
 
-    /// Refutes a cell again, in parts if need be.
-    fn refutes(&mut self, hull: &Hull, [start, end]: [f64; 2], halvings: u32) -> bool {
-        self.load(0, hull, start, end);
+    /// Refutes a cell of a block again, in parts if need be: the reference's enclosures may be the wider ones where it
+    /// carries other error terms than a compiled kernel. What holds for all parts holds for the whole.
+    fn refutes(&mut self, block: Block, span: [f64; 2], splits: u32) -> bool {
+        let answers = self.over(block, span);
+        self.is_refuted(answers)
+            || (splits > 0
+                && self
+                    .parts(block, span)
+                    .is_some_and(|parts| parts.into_iter().all(|(block, span)| self.refutes(block, span, splits - 1))))
+    }
+
+    /// The sign of the slope along the rays of a block over a cell, in parts if need be; 0 if it has none everywhere.
+    fn growth(&mut self, block: Block, span: [f64; 2], splits: u32) -> u32 {
+        let whole = growth(self.over(block, span));
+        let parts = if whole == 0 && splits > 0 { self.parts(block, span) } else { None };
+        let Some(parts) = parts else { return whole };
+        let mut signs = parts.into_iter().map(|(block, span)| self.growth(block, span, splits - 1));
+        let first = signs.next().unwrap_or(0);
+        if signs.all(|sign| sign == first) { first } else { 0 }
+    }
+
+    fn over(&mut self, (x, y, level): Block, [start, end]: [f64; 2]) -> Answers {
+        let hull = self.context.frame.hull(x, y, 1 << level);
+        self.load(0, &hull, start, end);
         self.beam.run(1);
         self.slope.run(1);
-        if self.is_refuted(self.answers(0)) {
-            return true;
+        self.answers(0)
+    }
+
+    /// The parts of a cell of a block: its quarters that hold pixels, or for a single ray the halves of the cell; `None` if
+    /// it has no smaller parts.
+    fn parts(&self, (x, y, level): Block, [start, end]: [f64; 2]) -> Option<Vec<(Block, [f64; 2])>> {
+        let (width, height) = self.context.frame.size();
+        if level > 0 {
+            let half = 1 << (level - 1);
+            let quarters = [(x, y), (x + half, y), (x, y + half), (x + half, y + half)].into_iter();
+            let inside = quarters.filter(|&(x, y)| x < width && y < height);
+            return Some(inside.map(|(x, y)| ((x, y, level - 1), [start, end])).collect());
         }
         let middle = 0.5 * (start + end);
-        halvings > 0
-            && start < middle
-            && middle < end
-            && self.refutes(hull, [start, middle], halvings - 1)
-            && self.refutes(hull, [middle, end], halvings - 1)
+        (start < middle && middle < end).then(|| vec![((x, y, level), [start, middle]), ((x, y, level), [middle, end])])
     }
 
     fn replay(
@@ -354,9 +387,8 @@ impl Checker<'_> {
         if helped.is_empty() {
             return Ok(());
         }
-        let hull = self.context.frame.hull(x, y, size);
         if cell.test != Test::Monotone {
-            if self.is_refuted(answers) || self.refutes(&hull, [start, end], HALVINGS) {
+            if self.is_refuted(answers) || self.refutes((x, y, cell.level), [start, end], SPLITS) {
                 for pixel in helped {
                     reached[pixel] = end;
                 }
@@ -364,7 +396,11 @@ impl Checker<'_> {
             }
             return Err(format!("{cell:?} is not refuted by the reference"));
         }
-        if answers.growth == 0 || answers.field & verdict::CONTINUOUS == 0 || !answers.condition {
+        let growth = match growth(answers) {
+            0 => self.growth((x, y, cell.level), [start, end], SPLITS),
+            sign => sign,
+        };
+        if growth == 0 {
             return Err(format!("{cell:?} is not monotone by the reference"));
         }
         for pixel in helped {
@@ -377,9 +413,9 @@ impl Checker<'_> {
                 continue;
             }
             let ray = self.context.frame.varying(pixel as u32 % width, pixel as u32 / width);
-            let constant = match answers.end == opposite(answers.growth) {
+            let constant = match answers.end == opposite(growth) {
                 true => answers.end,
-                false => self.constant_sign(&(ray, ray), [start, end], answers.growth),
+                false => self.constant_sign(&(ray, ray), [start, end], growth),
             };
             if constant & self.context.refuting() != 0 {
                 reached[pixel] = end;
@@ -447,6 +483,12 @@ impl Checker<'_> {
             && self.is_sound(ray, [start, middle], condition, halvings - 1)
             && self.is_sound(ray, [middle, end], condition, halvings - 1)
     }
+}
+
+/// The sign of the slope where the field is monotone, continuous and unconditioned, else 0.
+fn growth(answers: Answers) -> u32 {
+    let smooth = answers.field & verdict::CONTINUOUS != 0 && answers.condition;
+    if smooth { answers.growth } else { 0 }
 }
 
 fn load_plain(batch: &mut Batch<f64>, lane: usize, hull: &Hull, [start, end]: [f64; 2]) {
