@@ -146,7 +146,9 @@ pub fn arithmetic(graph: &Graph, field: Value, choice: Enclosures) -> (Arithmeti
         .filter(|(value, _)| varies[value.index()])
         .map(|(value, _)| uses[value.index()].saturating_sub(1))
         .sum();
-    if opaque > 0 {
+    if needed.iter().filter(|&&needed| needed).count() > LARGE {
+        (Arithmetic::Interval, "affine forms of so many operations would take longer to compile than they save")
+    } else if opaque > 0 {
         (Arithmetic::Interval, "some operations have no affine form")
     } else if repeated < REPEATED || products < REPEATED {
         (Arithmetic::Interval, "few quantities enter the formula more than once")
@@ -154,6 +156,10 @@ pub fn arithmetic(graph: &Graph, field: Value, choice: Enclosures) -> (Arithmeti
         (Arithmetic::Affine, "quantities enter the formula several times, through products")
     }
 }
+
+/// Operations from which on `auto` leaves affine forms alone: they are several times the code (a polynomial of 300 terms:
+/// 3.4 s against 0.1 s for a small picture).
+const LARGE: usize = 300;
 
 /// Repeated uses of quantities, and products, from which on `auto` takes affine forms.
 const REPEATED: usize = 3;

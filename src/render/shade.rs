@@ -180,7 +180,8 @@ impl Shading {
             ]
         });
         let materials = (0..shapes).map(|shape| {
-            let material = view.material.unwrap_or_else(|| default_material(shape));
+            let own = view.materials.iter().find(|(index, _)| *index == shape).map(|&(_, material)| material);
+            let material = own.or(view.material).unwrap_or_else(|| default_material(shape));
             (material, to_linear(material.color))
         });
         let materials = materials.collect();
