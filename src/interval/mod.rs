@@ -9,7 +9,8 @@
 //! - [`Interval`] and its operations, in one file per group;
 //! - [`Verdict`]: answers to questions about sets;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
-//! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]).
+//! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
+//! - [`Linear`]: functions between two parallel lines, with which affine forms pass through them.
 
 mod affine;
 mod affine_terms;
@@ -18,6 +19,8 @@ mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod linear;
+mod linear_functions;
 mod power;
 pub mod round;
 mod set_ops;
@@ -31,6 +34,7 @@ mod tests;
 pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
+pub use linear::Linear;
 pub use text::decimal;
 pub use verdict::Verdict;
 
