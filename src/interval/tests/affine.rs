@@ -1,7 +1,7 @@
 //! Affine forms against exact rationals: the form must hold the true value at the true symbols, not only somewhere.
 
 use super::{cases, exact, interval, members};
-use crate::interval::{Affine, Interval, Linear};
+use crate::interval::{Affine, Form, FullAffine, Interval, Linear};
 use fastrand::Rng;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -101,4 +101,67 @@ fn what_is_not_finite_is_unbounded() {
     }
     let zero = Affine::<N>::constant(Interval::ZERO);
     assert_eq!((wide * zero).to_interval(), Interval::ENTIRE);
+}
+
+/// The check above is sharp enough to notice a sum that is rounded to nearest with nothing set aside for it.
+#[test]
+fn a_sum_without_its_error_is_noticed() {
+    let mut rng = Rng::with_seed(41);
+    let symbols = [BigRational::zero(), BigRational::zero(), BigRational::zero()];
+    let noticed = (0..100).filter(|_| {
+        let (a, b) = (rng.f64(), rng.f64());
+        let form = Affine::constant(Interval::point(a + b));
+        !holds(&Pair { form, value: exact(a) + exact(b) }, &symbols)
+    });
+    assert!(noticed.count() > 30);
+}
+
+/// Full forms: values at the true symbols, with every error a symbol that the next results share.
+#[test]
+fn full_forms_hold_their_values() {
+    let mut rng = Rng::with_seed(42);
+    for case in 0..cases(300) {
+        // The place of the value between the ends of the symbol, by symbol; those that are claimed come later.
+        let mut symbols: Vec<BigRational> = Vec::new();
+        let mut pool: Vec<(FullAffine, BigRational)> = Vec::new();
+        for _ in 0..3 {
+            let lo = (rng.f64() - 0.5) * 10.0;
+            let x = Interval::new(lo, lo + rng.f64()).unwrap();
+            let a = members(&mut rng, x)[rng.usize(0..5)];
+            pool.push((Form::from_interval(x, symbols.len()), exact(a)));
+            symbols.push((exact(a) - exact(x.mid())) / exact(x.rad()));
+        }
+        for step in 0..8 {
+            let ((x, a), (y, b)) = (pool[rng.usize(0..pool.len())].clone(), pool[rng.usize(0..pool.len())].clone());
+            let (form, value) = match rng.u32(0..4) {
+                0 => (x + y, a + b),
+                1 => (x - y, a - b),
+                2 => (x.apply(&Linear::sqr(x.to_interval())), &a * &a),
+                _ => (x * y, a * b),
+            };
+            let terms = form.coefficients().terms().iter();
+            let affine =
+                terms.fold(exact(form.centre()), |sum, &(i, coefficient)| sum + exact(coefficient) * &symbols[i]);
+            let rest = &value - affine;
+            assert!(rest.abs() <= exact(form.error()), "case {case} step {step}: {form:?}");
+            if value.denom().bits() > 3000 {
+                break;
+            }
+            // The error's share becomes the value of the symbol that stands for it.
+            let size = exact(form.error());
+            symbols.push(if size.is_zero() { BigRational::zero() } else { rest / size });
+            pool.push((form.claim(symbols.len() - 1), value));
+        }
+    }
+}
+
+#[test]
+fn opposite_factors_have_a_product_of_one_sign() {
+    // (5 + e)(5 - e) = 25 - e^2, of which AF1 sees |e^2| <= 1 alone.
+    let x = FullAffine::from_interval(Interval::new(4.0, 6.0).unwrap(), 0);
+    let ten = Form::constant(Interval::point(10.0));
+    assert_eq!((x.clone() * (ten - x)).to_interval(), Interval::new(24.0, 25.0).unwrap());
+    let x = Affine::<1>::from_interval(Interval::new(4.0, 6.0).unwrap(), 0);
+    let ten = Affine::constant(Interval::point(10.0));
+    assert_eq!((x * (ten - x)).to_interval(), Interval::new(24.0, 26.0).unwrap());
 }
