@@ -10,6 +10,7 @@
 //! - [`Verdict`]: answers to questions about sets;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
 //! - [`Affine`]: affine forms with a bounded number of noise symbols.
+//! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
 
 mod affine;
 mod arith;
@@ -17,6 +18,7 @@ mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod modal;
 mod power;
 pub mod round;
 mod set_ops;
@@ -29,6 +31,7 @@ mod tests;
 
 pub use affine::Affine;
 pub use decoration::{Decorated, Decoration};
+pub use modal::Modal;
 pub use text::decimal;
 pub use verdict::Verdict;
 
