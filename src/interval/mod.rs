@@ -9,7 +9,8 @@
 //! - [`Interval`] and its operations, in one file per group;
 //! - [`Verdict`]: answers to questions about sets;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
-//! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]).
+//! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
+//! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
 
 mod affine;
 mod affine_terms;
@@ -18,6 +19,7 @@ mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod modal;
 mod power;
 pub mod round;
 mod set_ops;
@@ -31,6 +33,7 @@ mod tests;
 pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
+pub use modal::Modal;
 pub use text::decimal;
 pub use verdict::Verdict;
 
