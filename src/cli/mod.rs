@@ -2,6 +2,7 @@
 //! 1 the user's mistake, 2 ours, 130 interrupted.
 
 mod arguments;
+mod cost;
 mod failure;
 mod files;
 mod render;
@@ -50,6 +51,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Check { files } => text::check(files),
         Command::Fmt { files, check } => text::format(files, *check),
         Command::Emit(arguments) => text::emit(arguments),
+        Command::Cost(arguments) => cost::cost(arguments),
     }
 }
 
