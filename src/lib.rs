@@ -79,6 +79,7 @@
 //! - No input makes it panic. What a user can get wrong is a diagnostic; the exceptions are documented contracts between
 //!   modules.
 
+pub mod accuracy;
 pub mod cli;
 pub mod codegen;
 pub mod derive;

@@ -1,0 +1,3 @@
+//! What each level of accuracy costs.
+
+pub mod finder;
