@@ -8,7 +8,6 @@ use crate::case::Case;
 use crate::formula::Formula;
 use crate::formula::point;
 use crate::formula::rational;
-use crate::plain::Number;
 use crate::plain::Plain;
 
 const RUMP: &str = "333.75 b^6 + a^2 (11 a^2 b^2 - b^6 - 121 b^4 - 2) + 5.5 b^8 + a / (2 b)";

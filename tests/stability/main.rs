@@ -4,9 +4,17 @@
 mod case;
 mod exact;
 mod expressions;
+mod first_root;
 mod formula;
+mod functions;
+#[path = "../support/oracle.rs"]
+mod oracle;
 mod plain;
+mod poles;
+mod rays;
 mod shot;
+mod surfaces;
+mod torus;
 
 use std::collections::HashMap;
 use std::env;
@@ -43,6 +51,16 @@ cases! {
     expressions "Expressions whose terms cancel":
         rump rump_exactly wilkinson_at_its_roots wilkinson_roots wilkinson_perturbed muller
         cosine_near_zero difference_of_roots quadratic_formula;
+    functions "Functions and powers":
+        sine_of_1e22 sine_of_2_to_1023 odd_root astroid quotient_of_powers inverse_powers vanishing_square;
+    rays "Rays that graze or come from afar":
+        near_tangent touching grazing far_away small large shifted expanded zoomed_boxes zoomed_picture;
+    surfaces "Surfaces that taper, touch and cross":
+        steiner_axes steiner_on_axis teardrop_neck heart_dent sextic_nodes decic_nodes crosscap power_200 squared;
+    poles "Poles without a root":
+        plane tangent shell inverse;
+    first_root "First roots":
+        derivative_bisection clamped_newton;
 }
 
 /// What came out of a case, which runs once, whether its own test asks first or the table.

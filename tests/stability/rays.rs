@@ -13,7 +13,6 @@ use crate::plain::Surface;
 use crate::plain::close;
 use crate::plain::march;
 use crate::plain::surface;
-use crate::shot::Faults;
 use crate::shot::Look;
 use crate::shot::Shot;
 use crate::shot::Tally;
@@ -108,8 +107,8 @@ pub fn far_away() -> Case {
     let shot = shoot(&format!("{}\n{view}", Torus::TEXT), &options(32));
     let looks = shot.looks();
     let tally = check::<Torus>(&looks);
-    let single = faults(&looks, 1e-3, |ray, inside| Quartic::<f32>::new(ray).march(ray, inside, 1000));
-    let double = faults(&looks, 1e-3, |ray, inside| Quartic::<f64>::new(ray).march(ray, inside, 1000));
+    let single = faults(&looks, 1e-3, |ray, inside| Quartic::<f32>::new(ray).march(inside, 1000));
+    let double = faults(&looks, 1e-3, |ray, inside| Quartic::<f64>::new(ray).march(inside, 1000));
     println!("{tally:?} {single} {double} {}", marching::<f32, Torus>(&looks, 1000));
     Case {
         name: "a torus from 1e6 away",
@@ -194,3 +193,85 @@ pub fn expanded() -> Case {
 surface!(Zoomed, "x^2 + y^2 + z^2 - 200 x + 9999 = 0", |x, y, z| {
     x.power(2) + y.power(2) + z.power(2) - N::int(200) * x + N::int(9999)
 });
+
+/// Boxes of a width around points of the zoomed sphere near x = 100: in each the sphere really passes, as the exact signs at
+/// two corners prove.
+fn boxes_on_the_sphere(width: f64) -> Vec<[imp::interval::Interval; 3]> {
+    let mut rng = fastrand::Rng::with_seed(11);
+    let mut boxes = Vec::new();
+    while boxes.len() < 2000 {
+        let (y, z) = (rng.f64() * 0.2 - 0.1, rng.f64() * 0.2 - 0.1);
+        // A point of the sphere (x - 100)^2 + y^2 + z^2 = 1 beside x = 100, where y and z are on the unit circle.
+        let turn = (1.0 - y * y).sqrt() / y.hypot(1.0).max(1.0);
+        let _ = (turn, z);
+        let angle = rng.f64() * std::f64::consts::TAU;
+        let tilt = rng.f64() * 0.01 - 0.005;
+        let radius = f64::cos(tilt);
+        let centre = [100.0 + f64::sin(tilt), radius * angle.cos(), radius * angle.sin()];
+        let ends = centre.map(|c| {
+            let lo = c - width * rng.f64();
+            (lo, lo + width)
+        });
+        let corner = |outer: bool| {
+            let place = |i: usize, towards: bool| if towards == outer { ends[i].1 } else { ends[i].0 };
+            [place(0, centre[0] > 100.0), place(1, centre[1] > 0.0), place(2, centre[2] > 0.0)]
+        };
+        let sign = |p: [f64; 3]| {
+            let ray = imp::render::Ray { origin: p, direction: [0.0; 3] };
+            exact::sign::<Zoomed>(&ray, 0.0)
+        };
+        if sign(corner(true)) > 0 && sign(corner(false)) < 0 {
+            boxes.push(ends.map(|(lo, hi)| imp::interval::Interval::new(lo, hi).expect("in order")));
+        }
+    }
+    boxes
+}
+
+/// The same picture in the three ways that beams have.
+fn every_way(size: u32) -> [Options; 3] {
+    let options = options(size);
+    [
+        options.clone(),
+        Options { precision: Precision::Double, ..options.clone() },
+        Options { stop: Stop::Depth(40), ..options },
+    ]
+}
+
+pub fn zoomed_boxes() -> Case {
+    let text = Zoomed::TEXT.strip_suffix(" = 0").expect("an equation with 0");
+    let formula = Formula::new(text);
+    let (single, double) = (formula.single(), formula.double());
+    let (nearest_single, nearest_double) = (formula.nearest_single(), formula.nearest_double());
+    let mut lost = Vec::new();
+    for width in [1e-6, 1e-7, 1e-14] {
+        let boxes = boxes_on_the_sphere(width);
+        let mut counts = [0; 2];
+        for cell in &boxes {
+            for kept in [formula.reference(cell).interval(), single.enclose(cell), double.enclose(cell)] {
+                assert!(kept.contains(0.0), "a root is lost in {cell:?}: {kept}");
+            }
+            counts[0] += usize::from(!nearest_single.enclose_nearest(cell).contains(0.0));
+            counts[1] += usize::from(!nearest_double.enclose_nearest(cell).contains(0.0));
+        }
+        println!("{width} {counts:?}");
+        lost.push(counts);
+    }
+    let _ = point(0.0);
+    Case {
+        name: "roots in small boxes on x^2 + y^2 + z^2 - 200 x + 9999",
+        why: "",
+        single: format!("{lost:?}"),
+        double: String::new(),
+        imp: "none lost by reference, f32 and f64 kernels".to_owned(),
+        cost: String::new(),
+    }
+}
+
+pub fn zoomed_picture() -> Case {
+    let view = "domain [98.9, 101.1] x [-1.1, 1.1] x [-1.1, 1.1]
+camera(position = [100, -3, 0.001], target = [100, -1, 0.001], fov = 0.00001)";
+    for options in every_way(24) {
+        marched::<Zoomed>("the same sphere, zoomed", "", view, &options);
+    }
+    marched::<Zoomed>("the same sphere, zoomed", "", "domain [98.9, 101.1] x [-1.1, 1.1] x [-1.1, 1.1]\ncamera(position = [99, -3, 0], target = [99, 0, 0], fov = 0.00001)", &options(24)).0
+}
