@@ -10,7 +10,8 @@
 //! - [`Verdict`]: answers to questions about sets;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
 //! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
-//! - [`Linear`]: functions between two parallel lines, with which affine forms pass through them.
+//! - [`Linear`]: functions between two parallel lines, with which affine forms pass through them;
+//! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
 
 mod affine;
 mod affine_terms;
@@ -21,6 +22,7 @@ mod exact;
 mod integer;
 mod linear;
 mod linear_functions;
+mod modal;
 mod power;
 pub mod round;
 mod set_ops;
@@ -35,6 +37,7 @@ pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
 pub use linear::Linear;
+pub use modal::Modal;
 pub use text::decimal;
 pub use verdict::Verdict;
 

@@ -5,6 +5,7 @@ mod arithmetic;
 mod decorations;
 mod elementary;
 mod linear;
+mod modal;
 mod powers;
 mod rounding;
 mod special;
