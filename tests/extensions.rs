@@ -99,7 +99,7 @@ fn angle(y: &BigFloat, x: &BigFloat, cc: &mut Consts) -> BigFloat {
         return if y.is_negative() { half.neg() } else { half };
     }
     let slope = y.div(x, P, RM).atan(P, RM, cc);
-    match (x.is_negative(), y.is_negative()) {
+    match (x.is_negative(), y.is_negative() && !y.is_zero()) {
         (false, _) => slope,
         (true, false) => slope.add(&pi, P, RM),
         (true, true) => slope.sub(&pi, P, RM),
@@ -108,7 +108,7 @@ fn angle(y: &BigFloat, x: &BigFloat, cc: &mut Consts) -> BigFloat {
 
 /// The value of an operation; `None` where it is undefined or beyond the numbers that are worth a comparison.
 fn value(op: Op, x: &BigFloat, y: &BigFloat, cc: &mut Consts) -> Option<BigFloat> {
-    let (one, zero) = (big(1.0), big(0.0));
+    let one = big(1.0);
     let positive = !x.is_negative() && !x.is_zero();
     let inside_one = !below(&one, &x.abs());
     let defined = match op {
@@ -172,7 +172,7 @@ fn value(op: Op, x: &BigFloat, y: &BigFloat, cc: &mut Consts) -> Option<BigFloat
     };
     let size = result.abs();
     let worthwhile = result.is_zero() || below(&big(1e-30), &size) && below(&size, &big(1e30));
-    (worthwhile && !result.is_nan() && !below(&result, &zero) | result.is_negative()).then_some(result)
+    (worthwhile && !result.is_nan()).then_some(result)
 }
 
 /// A formula in x and y, with the operations that lead to it.
@@ -230,9 +230,12 @@ impl Expression {
     }
 }
 
+/// Whether the enclosure holds the value, which is itself known to some 90 bits after the cancellations of 320.
 fn contains(enclosure: Interval, value: &BigFloat) -> bool {
-    let above = enclosure.lo() == f64::NEG_INFINITY || !below(value, &big(enclosure.lo()));
-    !enclosure.is_empty() && above && (enclosure.hi() == f64::INFINITY || !below(&big(enclosure.hi()), value))
+    let doubt = value.abs().mul(&big(2f64.powi(-90)), P, RM);
+    let (least, most) = (value.sub(&doubt, P, RM), value.add(&doubt, P, RM));
+    let above = enclosure.lo() == f64::NEG_INFINITY || !below(&most, &big(enclosure.lo()));
+    !enclosure.is_empty() && above && (enclosure.hi() == f64::INFINITY || !below(&big(enclosure.hi()), &least))
 }
 
 #[test]

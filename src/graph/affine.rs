@@ -88,7 +88,8 @@ fn binary<C: Coefficients>(op: Op, x: &Ranged<C>, y: &Ranged<C>, value: Interval
         Op::Hypot => hypotenuse(x, y, value),
         Op::Pow => power(x, y, value)?,
         Op::Atan2 => angle(x, y)?,
-        _ => return None,
+        Op::Mod | Op::Less | Op::LessEqual | Op::Equal => return None,
+        _ => unreachable!("{} is not binary", op.name()),
     })
 }
 
