@@ -89,7 +89,12 @@ fn holds(line: &Linear, offset: Interval, x: f64, value: &BigFloat) -> bool {
     }
     let product = big(line.slope()).mul_full_prec(&big(x));
     // astro-float gets differences with 0 wrong at full precision.
-    if product.is_zero() { contains(offset, value) } else { contains(offset, &value.sub_full_prec(&product)) }
+    let difference = match (value.is_zero(), product.is_zero()) {
+        (true, _) => product.neg(),
+        (_, true) => value.clone(),
+        _ => value.sub_full_prec(&product),
+    };
+    contains(offset, &difference)
 }
 
 /// Places across `x`, its ends among them.
