@@ -163,8 +163,20 @@ fn value(op: Op, x: &BigFloat, y: &BigFloat, cc: &mut Consts) -> Option<BigFloat
         Op::Asinh => x.asinh(P, RM, cc),
         Op::Acosh => x.acosh(P, RM, cc),
         Op::Atanh => x.atanh(P, RM, cc),
-        Op::Min => if below(x, y) { x.clone() } else { y.clone() },
-        Op::Max => if below(x, y) { y.clone() } else { x.clone() },
+        Op::Min => {
+            if below(x, y) {
+                x.clone()
+            } else {
+                y.clone()
+            }
+        }
+        Op::Max => {
+            if below(x, y) {
+                y.clone()
+            } else {
+                x.clone()
+            }
+        }
         Op::Hypot => x.mul(x, P, RM).add(&y.mul(y, P, RM), P, RM).sqrt(P, RM),
         Op::Pow => x.pow(y, P, RM, cc),
         Op::Atan2 => angle(x, y, cc),
@@ -283,7 +295,10 @@ fn random_expressions_are_contained() {
             }
         }
     }
-    assert!(compared > 2 * cases() && narrower > cases() / 4, "{compared} values compared, {narrower} enclosures halved");
+    assert!(
+        compared > 2 * cases() && narrower > cases() / 4,
+        "{compared} values compared, {narrower} enclosures halved"
+    );
 }
 
 /// The sum that affine libraries lose which take no account of rounding: [-1, 1] + 1e23 + 2020 - 1e23.
@@ -303,7 +318,8 @@ fn a_small_interval_survives_a_large_constant() {
     }
 }
 
-/// The excess of an enclosure over the range is of second order in the width of the box for all but the natural extension.
+/// The excess of an enclosure over the range is of second order in the width of the box for all but the natural
+/// extension.
 #[test]
 fn excess_shrinks_with_the_square_of_the_width() {
     let formulas = [

@@ -161,8 +161,8 @@ fn bounds_rounded_carelessly_are_noticed() {
     }
 }
 
-/// On no interval is there a band narrower by more than a hundredth, as far as samples can tell; and half the width has a
-/// quarter of the band.
+/// On no interval is there a band narrower by more than a hundredth, as far as samples can tell; and half the width
+/// has a quarter of the band.
 #[test]
 fn bands_are_narrow() {
     let mut cc = Consts::new().unwrap();
