@@ -13,11 +13,16 @@
 
 mod affine;
 mod arith;
+mod cancel;
+mod decorated_sets;
 mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod parse;
 mod power;
+mod relations;
+mod reverse;
 pub mod round;
 mod set_ops;
 mod text;
@@ -29,6 +34,8 @@ mod tests;
 
 pub use affine::Affine;
 pub use decoration::{Decorated, Decoration};
+pub use parse::LiteralError;
+pub use relations::Overlap;
 pub use text::decimal;
 pub use verdict::Verdict;
 
