@@ -321,12 +321,14 @@ fn number(rng: &mut Rng) -> f64 {
 fn member(rng: &mut Rng, x: Interval) -> f64 {
     let inside = |t: f64| t.clamp(x.lo().max(f64::MIN), x.hi().min(f64::MAX));
     let (lo, hi) = (inside(x.lo()), inside(x.hi()));
-    match rng.u32(0..6) {
+    let member = match rng.u32(0..6) {
         0 => lo,
         1 => hi,
         2 => inside(number(rng)),
         _ => inside(lo + (hi / 2.0 - lo / 2.0) * 2.0 * rng.f64()),
-    }
+    };
+    // Zeros without a sign, as real numbers have it.
+    member + 0.0
 }
 
 /// What the cases of one operation came to.
@@ -427,7 +429,7 @@ pub const HEADER: &str = "\
 /// How many steps from one number to the next lead from `a` up to `b`; 0 if `a` is above `b`.
 fn neighbours(a: f64, b: f64) -> u64 {
     let rank = |x: f64| {
-        let magnitude = (x.to_bits() & (u64::MAX >> 1)) as i64;
+        let magnitude = i128::from(x.to_bits() & (u64::MAX >> 1));
         if x.is_sign_negative() { -magnitude } else { magnitude }
     };
     u64::try_from(rank(b) - rank(a)).unwrap_or(0)
