@@ -15,12 +15,17 @@
 mod affine;
 mod affine_terms;
 mod arith;
+mod cancel;
+mod decorated_sets;
 mod decoration;
 mod elementary;
 mod exact;
 mod integer;
 mod modal;
+mod parse;
 mod power;
+mod relations;
+mod reverse;
 pub mod round;
 mod set_ops;
 mod text;
@@ -34,6 +39,8 @@ pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
 pub use modal::Modal;
+pub use parse::LiteralError;
+pub use relations::Overlap;
 pub use text::decimal;
 pub use verdict::Verdict;
 
