@@ -3,9 +3,8 @@
 //!
 //! The domain is halved in every direction, level by level. Of the cells that the natural extension leaves undecided a
 //! few are taken, cut, and tried with both arithmetics; their shares estimate how many cells of each level either would
-//! have to test. A cell costs the operations of the compiled program and some for keeping account of it; what is left at
-//! the finest level costs the same again several times over, because it is then tried with its derivative; and every
-//! operation costs its compilation. The weights are fitted to measured pictures of the gallery.
+//! have to test. A cell costs the operations of the compiled program; one that is left at the finest level costs as much as
+//! what then becomes of it, and every operation costs its compilation. The weights are fitted to measured pictures.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,12 +12,12 @@ use std::sync::Arc;
 use crate::derive::Arithmetic;
 use crate::derive::Extension;
 use crate::derive::Formula;
+use crate::derive::LaneProgram;
 use crate::derive::Output;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::derive::Spec;
 use crate::derive::Symbols;
-use crate::derive::affine::SYMBOLS;
 use crate::graph::Graph;
 use crate::graph::Value;
 use crate::interval::Decorated;
@@ -35,12 +34,10 @@ const BUDGET: usize = 100_000;
 /// Fewer sampled cells than this tell nothing.
 const LEAST_SAMPLES: usize = 4;
 
-/// In operations of a program on one lane: what the account of a cell costs, and compiling an operation.
-const ACCOUNT: f64 = 400.0;
+/// In operations of a program on one lane: what a cell costs that is left at the finest level, and what compiling an
+/// operation costs.
+const LEFT: f64 = 1600.0;
 const COMPILATION: f64 = 10_000.0;
-
-/// What a cell costs that is left at the finest level, in programs with the natural extension.
-const LEFT: f64 = 5.0;
 
 /// What one arithmetic would have to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,51 +79,68 @@ impl fmt::Display for Choice {
     }
 }
 
-/// Tries intervals and affine forms on the domain, which has a range for some of the graph's inputs, at most three; all
-/// other inputs are points, whose values are given. `None` if the formula is too large to be tried.
-pub fn choose(graph: &Graph, root: Value, inputs: &[(&str, Interval)]) -> Option<Choice> {
+/// Tries intervals and affine forms on the domain, which has a range for each of one to three inputs of the graph; the
+/// others are parameters with the range that they may be set in. `None` if the formula is too large to be tried.
+///
+/// The trial takes the middle of a parameter's range, or 1/2 where that is unbounded, and not what it is set to: the choice
+/// is part of what a certificate stands on.
+pub fn choose(
+    graph: &Graph,
+    root: Value,
+    domain: &[(&str, Interval)],
+    parameters: &[(&str, Interval)],
+) -> Option<Choice> {
     let needed = graph.reachable(&[root]).into_iter().filter(|&needed| needed).count();
-    let samples = (BUDGET / (needed << inputs.len().min(SYMBOLS)) / LEVELS as usize).min(SAMPLES);
+    let boxes = LEVELS as usize * (1 << domain.len());
+    let samples = (BUDGET / (boxes * needed.max(1))).min(SAMPLES);
     if samples < LEAST_SAMPLES {
         return None;
     }
-    let costs = [Arithmetic::Interval, Arithmetic::Affine].map(|arithmetic| program(graph, root, inputs, arithmetic));
+    let costs = [Arithmetic::Interval, Arithmetic::Affine]
+        .map(|arithmetic| program(graph, root, domain, parameters, arithmetic).cost());
     let formula = Formula::new(graph, root);
+    let known = |list: &[(&str, Interval)], name: &str| list.iter().find(|(n, _)| *n == name).map(|&(_, range)| range);
     let start: Vec<Interval> = formula
         .variables()
         .iter()
-        .map(|name| inputs.iter().find(|(n, _)| n == name).map_or(Interval::ZERO, |&(_, range)| range))
+        .map(|name| {
+            let parameter = || known(parameters, name).filter(|range| range.is_bounded()).map(Interval::mid);
+            known(domain, name).unwrap_or_else(|| Interval::point(parameter().unwrap_or(0.5)))
+        })
         .collect();
     let counts = trial(&formula, start, samples);
     let [interval, affine] = [0, 1].map(|i| {
         let (operations, Count { tested, left }) = (costs[i], counts[i]);
-        let total = tested * (operations as f64 + ACCOUNT)
-            + left * (LEFT * costs[0] as f64 + ACCOUNT)
-            + operations as f64 * COMPILATION;
+        let total = tested * operations as f64 + left * LEFT + operations as f64 * COMPILATION;
         Work { operations, tested, left, total }
     });
     let arithmetic = if affine.total < interval.total { Arithmetic::Affine } else { Arithmetic::Interval };
     Some(Choice { arithmetic, interval, affine })
 }
 
-/// The operations of the compiled program of a formula on boxes of the domain.
-fn program(graph: &Graph, root: Value, inputs: &[(&str, Interval)], arithmetic: Arithmetic) -> usize {
-    let names: Vec<String> = inputs.iter().map(|(name, _)| (*name).to_owned()).collect();
+/// The compiled program of a formula on boxes of the domain.
+fn program(
+    graph: &Graph,
+    root: Value,
+    domain: &[(&str, Interval)],
+    parameters: &[(&str, Interval)],
+    arithmetic: Arithmetic,
+) -> LaneProgram {
+    let owned = |list: &[(&str, Interval)]| -> Vec<String> { list.iter().map(|(name, _)| (*name).to_owned()).collect() };
     let mut graph = graph.clone();
-    let domain = inputs.iter().map(|&(name, range)| (graph.var(name), range)).collect();
-    let uniforms = graph.variables().iter().filter(|name| !names.contains(name)).cloned().collect();
+    let ranges = domain.iter().map(|&(name, range)| (graph.var(name), range)).collect();
     let spec = Spec {
         graph: Arc::new(graph),
-        inputs: names.clone(),
-        uniforms,
+        inputs: owned(domain),
+        uniforms: owned(parameters),
         outputs: vec![Output::Refutation(root)],
-        domain,
-        promises: Vec::new(),
+        domain: ranges,
+        promises: parameters.iter().map(|&(name, range)| (name.to_owned(), range)).collect(),
         arithmetic,
-        symbols: names.into_iter().take(SYMBOLS).collect(),
+        symbols: owned(domain),
         rounding: Rounding::Outward,
     };
-    spec.lower(Precision::Single).cost()
+    spec.lower(Precision::Single)
 }
 
 /// Cells tested on all levels and cells left undecided on the last.
