@@ -10,7 +10,7 @@ use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::derive::Spec;
-use crate::derive::extension::Extension;
+use crate::derive::Extension;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::diagnostic::did_you_mean;

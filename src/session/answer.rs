@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::derive::extension::Extension;
-use crate::derive::extension::Formula;
+use crate::derive::Extension;
+use crate::derive::Formula;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::diagnostic::did_you_mean;

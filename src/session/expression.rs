@@ -16,7 +16,7 @@ use crate::derive::Arithmetic;
 use crate::derive::Output;
 use crate::derive::Rounding;
 use crate::derive::Spec;
-use crate::derive::extension::Formula;
+use crate::derive::Formula;
 use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
