@@ -10,6 +10,7 @@
 //! - [`Verdict`]: answers to questions about sets;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
 //! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
+//! - [`Linear`]: functions between two parallel lines, with which affine forms pass through them;
 //! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
 
 mod affine;
@@ -21,6 +22,8 @@ mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod linear;
+mod linear_functions;
 mod modal;
 mod parse;
 mod power;
@@ -38,6 +41,7 @@ mod tests;
 pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
+pub use linear::Linear;
 pub use modal::Modal;
 pub use parse::LiteralError;
 pub use relations::Overlap;

@@ -65,7 +65,7 @@ impl<T: Format> ShapeKernels<T> {
         options: &Options,
         (backend, plan): (&dyn Backend, &mut Plan),
     ) -> Result<Self, Diagnostic> {
-        let (beams, reason) = arithmetic(&scene.graph, shape.field, options.enclosures);
+        let (beams, reason) = arithmetic(scene, shape, options.enclosures);
         plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: options.rounding, arithmetic: beams };
