@@ -29,6 +29,14 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Ok(session::write(path, bytes)?)
 }
 
+/// Whether there is a folder for a file that will be written later, as [`session::check_folder`].
+///
+/// # Errors
+/// As there.
+pub fn check_folder(path: &Path) -> Result<(), Failure> {
+    Ok(session::check_folder(path)?)
+}
+
 /// Writes to stdout.
 ///
 /// # Errors

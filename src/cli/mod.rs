@@ -3,6 +3,7 @@
 
 mod arguments;
 mod eval;
+mod cost;
 mod failure;
 mod files;
 mod render;
@@ -54,6 +55,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Emit(arguments) => text::emit(arguments),
         Command::Eval(arguments) => eval::eval(arguments),
         Command::Repl => Ok(repl::run()?),
+        Command::Cost(arguments) => cost::cost(arguments),
     }
 }
 

@@ -34,6 +34,7 @@ pub use crate::session::backend::backend;
 pub use crate::session::load::MAX_BYTES;
 pub use crate::session::load::bytes;
 pub use crate::session::save::cannot_write;
+pub use crate::session::save::check_folder;
 pub use crate::session::save::finish_writing;
 pub use crate::session::save::write;
 pub use crate::session::stages::Emission;

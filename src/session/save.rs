@@ -58,6 +58,20 @@ fn replace(target: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) ->
     Ok(())
 }
 
+/// Whether there is a folder for a file that will be written later.
+///
+/// # Errors
+/// If there is none, or the file's name is that of a folder.
+pub fn check_folder(path: &Path) -> Result<(), Diagnostic> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let kind = match folder {
+        _ if path.is_dir() => io::ErrorKind::IsADirectory,
+        Some(folder) if !folder.is_dir() => io::ErrorKind::NotFound,
+        _ => return Ok(()),
+    };
+    Err(cannot_write(path, &kind.into()))
+}
+
 /// Why a file cannot be written.
 pub fn cannot_write(path: &Path, error: &io::Error) -> Diagnostic {
     let name = path.display();
@@ -89,6 +103,8 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert!(write(folder.path(), b"x").is_err());
         assert!(write(&folder.path().join("no/b.png"), b"x").is_err());
+        assert!(check_folder(&path).is_ok() && check_folder(Path::new("a.png")).is_ok());
+        assert!(check_folder(folder.path()).is_err() && check_folder(&folder.path().join("no/b.png")).is_err());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
