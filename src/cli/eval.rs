@@ -7,7 +7,7 @@ mod request;
 use crate::cli::arguments::EvalArguments;
 use crate::cli::failure::Failure;
 use crate::cli::files;
-use crate::derive::extension::Extension;
+use crate::derive::Extension;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::interval::Decorated;

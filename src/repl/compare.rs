@@ -1,6 +1,6 @@
 //! `:compare` and `:bisect`: what the arithmetics make of one expression, at once and in parts.
 
-use crate::derive::extension::Extension;
+use crate::derive::Extension;
 use crate::interval::decimal;
 use crate::repl::state::Prepared;
 use crate::repl::state::State;

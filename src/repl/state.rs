@@ -1,6 +1,6 @@
 //! What a session knows, and what one line does to it: a line in, a text out, no terminal.
 
-use crate::derive::extension::Formula;
+use crate::derive::Formula;
 use crate::diagnostic::code;
 use crate::interval::Decorated;
 use crate::repl::commands;

@@ -152,12 +152,15 @@ pub fn quotient_of_powers() -> Case {
 
 pub fn inverse_powers() -> Case {
     // 1e-40 and 1e-320 are subnormal: of 24 and 53 digits few are left.
-    let (single, double) = (1.0 / 10f32.power(20) / 10f32.power(20) * 1e20 * 1e20, 1.0 / 1e8f64.power(40) * 1e160 * 1e160);
+    let (single, double) =
+        (1.0 / 10f32.power(20) / 10f32.power(20) * 1e20 * 1e20, 1.0 / 1e8f64.power(40) * 1e160 * 1e160);
     assert!((single - 1.0).abs() > 1e-6 && (double - 1.0).abs() > 1e-6, "{single}, {double}");
     let formula = Formula::new("x^(-40) * 1e160 * 1e160");
     let said = formula.reference(&[point(1e8)]).interval();
     assert!(said.contains(1.0) && said.width() > 1e-6 && said.width() < 1e-3, "{said}");
-    assert!(formula.double().enclose(&[point(1e8)]).contains(1.0) && formula.single().enclose(&[point(1e8)]).contains(1.0));
+    assert!(
+        formula.double().enclose(&[point(1e8)]).contains(1.0) && formula.single().enclose(&[point(1e8)]).contains(1.0)
+    );
     let exact = Formula::new("(1e8)^(-40) * 1e160 * 1e160").folded();
     assert_eq!(exact.number().map(ToString::to_string).as_deref(), Some("1"));
     Case {

@@ -21,8 +21,8 @@ use crate::shot::faults;
 use crate::shot::marching;
 use crate::shot::options;
 use crate::shot::shoot;
-use crate::torus::Torus;
 use crate::torus::Quartic;
+use crate::torus::Torus;
 
 surface!(Grazing, "y^2 - 10 y + 25 - 1e-12 = 0", |_x, y, _z| {
     y.power(2) - N::int(10) * y + N::int(25) - N::ratio(1, 1_000_000_000_000)

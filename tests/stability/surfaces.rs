@@ -27,24 +27,33 @@ surface!(Heart, "(2x^2 + y^2 + z^2 - 1)^3 = (0.1x^2 + y^2) z^3", |x, y, z| {
     let body = N::int(2) * x.power(2) + y.power(2) + z.power(2) - N::int(1);
     body.power(3) - (N::ratio(1, 10) * x.power(2) + y.power(2)) * z.power(3)
 });
-surface!(Sextic, "let phi = (1 + sqrt(5)) / 2\nsurface barth: 4(phi^2 x^2 - y^2)(phi^2 y^2 - z^2)(phi^2 z^2 - x^2) = (1 + 2phi)(x^2 + y^2 + z^2 - 1)^2", |x, y, z| {
-    let square = N::phi().power(2);
-    let [a, b, c] = [x, y, z].map(|v| v.power(2));
-    let factor = |p: &N, q: &N| square.clone() * p.clone() - q.clone();
-    let shell = a.clone() + b.clone() + c.clone() - N::int(1);
-    N::int(4) * factor(&a, &b) * factor(&b, &c) * factor(&c, &a) - (N::int(1) + N::int(2) * N::phi()) * shell.power(2)
-});
-surface!(Decic, "let phi = (1 + sqrt(5)) / 2\nsurface decic: 8(x^2 - phi^4 y^2)(y^2 - phi^4 z^2)(z^2 - phi^4 x^2)(x^4 + y^4 + z^4 - 2x^2 y^2 - 2x^2 z^2 - 2y^2 z^2) + (3 + 5phi)(x^2 + y^2 + z^2 - 1)^2 (x^2 + y^2 + z^2 - (2 - phi))^2 = 0", |x, y, z| {
-    let fourth = N::phi().power(4);
-    let [a, b, c] = [x, y, z].map(|v| v.power(2));
-    let factor = |p: &N, q: &N| p.clone() - fourth.clone() * q.clone();
-    let planes = N::int(8) * factor(&a, &b) * factor(&b, &c) * factor(&c, &a);
-    let mixed = a.clone() * b.clone() + a.clone() * c.clone() + b.clone() * c.clone();
-    let quartic = a.power(2) + b.power(2) + c.power(2) - N::int(2) * mixed;
-    let square = a + b + c;
-    let shells = (square.clone() - N::int(1)).power(2) * (square - (N::int(2) - N::phi())).power(2);
-    planes * quartic + (N::int(3) + N::int(5) * N::phi()) * shells
-});
+surface!(
+    Sextic,
+    "let phi = (1 + sqrt(5)) / 2\nsurface barth: 4(phi^2 x^2 - y^2)(phi^2 y^2 - z^2)(phi^2 z^2 - x^2) = (1 + 2phi)(x^2 + y^2 + z^2 - 1)^2",
+    |x, y, z| {
+        let square = N::phi().power(2);
+        let [a, b, c] = [x, y, z].map(|v| v.power(2));
+        let factor = |p: &N, q: &N| square.clone() * p.clone() - q.clone();
+        let shell = a.clone() + b.clone() + c.clone() - N::int(1);
+        N::int(4) * factor(&a, &b) * factor(&b, &c) * factor(&c, &a)
+            - (N::int(1) + N::int(2) * N::phi()) * shell.power(2)
+    }
+);
+surface!(
+    Decic,
+    "let phi = (1 + sqrt(5)) / 2\nsurface decic: 8(x^2 - phi^4 y^2)(y^2 - phi^4 z^2)(z^2 - phi^4 x^2)(x^4 + y^4 + z^4 - 2x^2 y^2 - 2x^2 z^2 - 2y^2 z^2) + (3 + 5phi)(x^2 + y^2 + z^2 - 1)^2 (x^2 + y^2 + z^2 - (2 - phi))^2 = 0",
+    |x, y, z| {
+        let fourth = N::phi().power(4);
+        let [a, b, c] = [x, y, z].map(|v| v.power(2));
+        let factor = |p: &N, q: &N| p.clone() - fourth.clone() * q.clone();
+        let planes = N::int(8) * factor(&a, &b) * factor(&b, &c) * factor(&c, &a);
+        let mixed = a.clone() * b.clone() + a.clone() * c.clone() + b.clone() * c.clone();
+        let quartic = a.power(2) + b.power(2) + c.power(2) - N::int(2) * mixed;
+        let square = a + b + c;
+        let shells = (square.clone() - N::int(1)).power(2) * (square - (N::int(2) - N::phi())).power(2);
+        planes * quartic + (N::int(3) + N::int(5) * N::phi()) * shells
+    }
+);
 surface!(Crosscap, "4x^2 (x^2 + y^2 + z^2 + z) + y^2 (y^2 + z^2 - 1) = 0", |x, y, z| {
     let [a, b, c] = [&x, &y, &z].map(|v| v.power(2));
     N::int(4) * a.clone() * (a + b.clone() + c.clone() + z) + b.clone() * (b + c - N::int(1))
@@ -72,7 +81,11 @@ fn views<S: Surface>(name: &'static str, why: &'static str, views: &[String], si
         let (looks, tally, evaluations) = looks::<S>(view, &options(size));
         println!("  {name} {view:?} {tally:?}");
         all.extend(looks);
-        sum = Tally { proved: sum.proved + tally.proved, missed: sum.missed + tally.missed, unknown: sum.unknown + tally.unknown };
+        sum = Tally {
+            proved: sum.proved + tally.proved,
+            missed: sum.missed + tally.missed,
+            unknown: sum.unknown + tally.unknown,
+        };
         cost += evaluations;
     }
     let (single, double) = (marching::<f32, S>(&all, 1000), marching::<f64, S>(&all, 1000));
@@ -110,7 +123,9 @@ pub fn steiner_on_axis() -> Case {
     let mut tallies = Vec::new();
     for x in [0.3125, 0.53125] {
         for dz in [0.0, 2f64.powi(-18), 2f64.powi(-24), 2f64.powi(-30)] {
-            let view = format!("domain {domain}\ncamera(position = [{x:?}, -2, {dz:?}], target = [{x:?}, 0, {dz:?}], fov = 1)");
+            let view = format!(
+                "domain {domain}\ncamera(position = [{x:?}, -2, {dz:?}], target = [{x:?}, 0, {dz:?}], fov = 1)"
+            );
             let (looks, tally, cost) = looks::<Steiner>(&view, &options(1));
             println!("   {x} {dz} {tally:?} {cost} {:?}", looks[0].depth);
             tallies.push(tally);
@@ -135,7 +150,10 @@ pub fn teardrop_neck() -> Case {
             window(domain, [x, -2.0, 0.5], [x, 0.0, 0.0], 4.0 * x * x)
         })
         .collect();
-    let (_, tally, _) = looks::<Teardrop>(&format!("domain {domain}\ncamera(position = [0, -2, 0], target = [0, 0, 0], fov = 1)"), &options(1));
+    let (_, tally, _) = looks::<Teardrop>(
+        &format!("domain {domain}\ncamera(position = [0, -2, 0], target = [0, 0, 0], fov = 1)"),
+        &options(1),
+    );
     println!("  through the point {tally:?}");
     views::<Teardrop>("the teardrop's neck", "", &list, 21)
 }
@@ -155,9 +173,8 @@ pub fn heart_dent() -> Case {
 }
 
 pub fn sextic_nodes() -> Case {
-    let list: Vec<String> = [1e-2, 1e-5, 1e-8]
-        .map(|side| window("[0.9, 1.1]^3", [1.5, -2.0, 3.3], [1.0, 1.0, 1.0], side))
-        .into();
+    let list: Vec<String> =
+        [1e-2, 1e-5, 1e-8].map(|side| window("[0.9, 1.1]^3", [1.5, -2.0, 3.3], [1.0, 1.0, 1.0], side)).into();
     views::<Sextic>("a double point of the Barth sextic", "", &list, 21)
 }
 

@@ -158,10 +158,8 @@ impl<T: Format> Programs<T> {
         };
         let orders = Orders { scene, shape, reach, settings };
         let finder = settings.finder;
-        let slope = matches!(
-            finder,
-            Finder::Mitchell | Finder::IntervalNewton | Finder::AlefeldHansen | Finder::MrfNewton
-        );
+        let slope =
+            matches!(finder, Finder::Mitchell | Finder::IntervalNewton | Finder::AlefeldHansen | Finder::MrfNewton);
         let point = slope || matches!(finder, Finder::Mrf | Finder::MrfRo);
         Ok(Self {
             field: make(orders.field())?,

@@ -377,7 +377,10 @@ mod tests {
         assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
         assert!(axis.from < places[0] && places[3] < axis.to);
         assert!(axis.ticks.len() >= 4 && axis.ticks.len() <= 12, "{:?}", axis.ticks);
-        assert_eq!((axis.text(axis.place(0.0)), axis.text(-14.0), axis.text(2.0)), ("0".into(), "1e-14".into(), "100".into()));
+        assert_eq!(
+            (axis.text(axis.place(0.0)), axis.text(-14.0), axis.text(2.0)),
+            ("0".into(), "1e-14".into(), "100".into())
+        );
         // One number, or none, still makes an axis.
         assert!(Axis::new([5.0].into_iter()).ticks.len() >= 2);
         assert!(!Axis::new([].into_iter()).ticks.is_empty());

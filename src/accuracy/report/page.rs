@@ -133,7 +133,13 @@ pub fn charts(report: &impl Report) -> Result<Markup, Diagnostic> {
 /// A table that can be sorted, with the meaning of its columns.
 pub fn table(table: &Table) -> Markup {
     let shown = table.shown(Shown::Page);
-    let text = |c: usize| table.lines.iter().any(|line| line.failure.is_none() && line.cells[c].key().is_none() && line.cells[c] != crate::accuracy::report::table::Cell::Missing);
+    let text = |c: usize| {
+        table.lines.iter().any(|line| {
+            line.failure.is_none()
+                && line.cells[c].key().is_none()
+                && line.cells[c] != crate::accuracy::report::table::Cell::Missing
+        })
+    };
     html! {
         h2 { "All levels" }
         p { "A click on a heading sorts by it, a second click turns the order round. "

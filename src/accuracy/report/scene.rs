@@ -111,9 +111,13 @@ const FIELDS: &[Field<Row>] = &[
         |row| count(row, |m| m.unknown),
     ),
     field("compared", "compared", File, "pixels that the reference decides", |row| count(row, |m| m.errors.compared)),
-    field("wrong", "wrong", Terminal, "pixels drawn as a hit where the reference proves a miss, or the reverse", |row| {
-        count(row, |m| m.errors.wrong)
-    }),
+    field(
+        "wrong",
+        "wrong",
+        Terminal,
+        "pixels drawn as a hit where the reference proves a miss, or the reverse",
+        |row| count(row, |m| m.errors.wrong),
+    ),
     field("missed", "missed", Page, "of these: hits of the reference that are not drawn", |row| {
         count(row, |m| m.errors.missed)
     }),

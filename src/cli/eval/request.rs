@@ -13,8 +13,8 @@ use serde::de::SeqAccess;
 use serde::de::Visitor;
 
 use crate::cli::eval::number;
-use crate::derive::extension::Extension;
-use crate::derive::extension::Formula;
+use crate::derive::Extension;
+use crate::derive::Formula;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::interval::Decorated;
