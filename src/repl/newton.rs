@@ -26,6 +26,8 @@ const RESOLUTION: f64 = 1.0 / (1u64 << 40) as f64;
 /// which rounding errors decide, would fill the search with ever smaller ones.
 const CROWD: usize = 256;
 const CROWDED: f64 = 1.0 / (1u64 << 26) as f64;
+/// Intervals that are looked at once more when the search is over.
+const MAX_RESORTS: usize = 64;
 /// Steps that narrow one bracket; quadratic convergence needs few, bisection one a bit.
 const MAX_STEPS: usize = 200;
 
@@ -82,12 +84,13 @@ impl Search {
     pub fn run(mut self, range: Interval) -> Roots {
         let mut roots = Roots { proved: Vec::new(), unknown: Vec::new(), exhausted: false };
         let mut open = BinaryHeap::from([Open(range)]);
+        let mut rest = Vec::new();
         // The widest first: when the search has to end, what is unknown is as short as can be.
         while let Some(Open(x)) = open.pop() {
             let crowded = open.len() > CROWD && x.width() <= CROWDED * scale(x, range);
             if self.spent > BUDGET || crowded {
                 roots.exhausted |= !crowded;
-                self.last_resort(x, range, &mut roots);
+                rest.push(x);
                 continue;
             }
             match self.examine(x) {
@@ -104,8 +107,15 @@ impl Search {
                                 .map(Open),
                         );
                     }
-                    None => self.last_resort(x, range, &mut roots),
+                    None => rest.push(x),
                 },
+            }
+        }
+        let rest = merged(rest);
+        for (number, &x) in rest.iter().enumerate() {
+            match number {
+                0..MAX_RESORTS => self.last_resort(x, range, &mut roots),
+                _ => roots.unknown.push(x),
             }
         }
         self.tidy(&mut roots);
@@ -281,16 +291,8 @@ impl Search {
             root.alone.is_some_and(|alone| alone.contains_interval(x)) || x.is_singleton() && x == root.bracket
         };
         roots.unknown.retain(|x| proved.iter().all(|root| !known(*x, root)));
-        roots.unknown.sort_by(|a, b| a.lo().total_cmp(&b.lo()));
-        let mut unknown: Vec<Interval> = Vec::new();
-        for x in std::mem::take(&mut roots.unknown) {
-            match unknown.last_mut() {
-                Some(last) if !last.disjoint(x) => *last = last.hull(x),
-                _ => unknown.push(x),
-            }
-        }
+        roots.unknown = merged(std::mem::take(&mut roots.unknown));
         roots.proved = proved;
-        roots.unknown = unknown;
     }
 
     /// Two overlapping brackets: of one zero if the function is monotone on both together, else of at least one.
@@ -344,6 +346,19 @@ fn split(x: Interval, range: Interval) -> Option<f64> {
         return None;
     }
     simplest(x).filter(|&at| at > x.lo() && at < x.hi())
+}
+
+/// Intervals in order, with those that touch made one.
+fn merged(mut intervals: Vec<Interval>) -> Vec<Interval> {
+    intervals.sort_by(|a, b| a.lo().total_cmp(&b.lo()));
+    let mut merged: Vec<Interval> = Vec::new();
+    for x in intervals {
+        match merged.last_mut() {
+            Some(last) if !last.disjoint(x) => *last = last.hull(x),
+            _ => merged.push(x),
+        }
+    }
+    merged
 }
 
 /// Values that are 0 wherever `root` is 0: of a quotient the dividend, of a power the base, and so on inward; a tangent
