@@ -3,7 +3,29 @@
 use super::{Interval, round};
 
 impl Interval {
-    /// `hi - lo` rounded up; NaN if empty.
+    /// IEEE 1788 `inf`: the greatest lower bound, inf if empty. A lower bound of 0 is -0.0, as the standard asks;
+    /// [`Interval::lo`] says +0.0 there, and NaN for the empty set.
+    pub fn inf(self) -> f64 {
+        if self.is_empty() {
+            f64::INFINITY
+        } else if self.lo == 0.0 {
+            -0.0
+        } else {
+            self.lo
+        }
+    }
+
+    /// IEEE 1788 `sup`: the least upper bound, -inf if empty.
+    pub fn sup(self) -> f64 {
+        if self.is_empty() { f64::NEG_INFINITY } else { self.hi }
+    }
+
+    /// IEEE 1788 `midRad`: [`Interval::mid`] and [`Interval::rad`].
+    pub fn mid_rad(self) -> (f64, f64) {
+        (self.mid(), self.rad())
+    }
+
+    /// IEEE 1788 `wid`: `hi - lo` rounded up; NaN if empty.
     pub fn width(self) -> f64 {
         round::sub_up(self.hi, self.lo)
     }
