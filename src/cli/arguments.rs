@@ -64,8 +64,32 @@ pub enum Command {
     },
     /// Print a stage of the compilation.
     Emit(EmitArguments),
+    /// Enclose the values of an expression over a box.
+    Eval(EvalArguments),
     /// Measure what accuracy costs: a scene at many levels of accuracy, or an expression in every arithmetic.
     Cost(CostArguments),
+    /// Calculate with boxes interactively; `:help` there says how.
+    Repl,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct EvalArguments {
+    /// An expression such as 'x^2 - 1'; with --json a file of requests, `-` for stdin.
+    #[arg(value_name = "EXPR", allow_hyphen_values = true)]
+    pub expression: String,
+    /// A number such as x=0.1 (one tenth exactly) or a=pi/2, or a box such as x=[1,2].
+    #[arg(value_name = "NAME=VALUE", conflicts_with = "json")]
+    pub values: Vec<String>,
+    /// interval, affine, centred and others, `auto` for what they prove together, `all` for one line of each
+    /// [default: auto; with --json: interval].
+    #[arg(long, value_name = "NAME")]
+    pub arithmetic: Option<String>,
+    /// A file whose `let`, `fn` and `param` the expression may use.
+    #[arg(long, value_name = "FILE")]
+    pub definitions: Option<PathBuf>,
+    /// Answer requests, one JSON object a line: {"expr": "x^2 - 1", "vars": {"x": ["-1", "2"]}}.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What a picture is computed with; shared by all commands that compute one.

@@ -1,0 +1,85 @@
+//! The first root of a torus: two published methods lose it on one ray in twenty-five, Imp proves it on the same rays.
+
+use imp::render::Ray;
+
+use crate::case::Case;
+use crate::plain::Plain;
+use crate::plain::Surface;
+use crate::shot::Look;
+use crate::shot::Tally;
+use crate::shot::check;
+use crate::shot::faults;
+use crate::shot::options;
+use crate::shot::shoot;
+use crate::torus::Quartic;
+use crate::torus::Torus;
+
+/// Eyes around the torus.
+const EYES: [&str; 6] = [
+    "[2.1, -1.3, 0.4]",
+    "[-1.2, 1.9, 1.1]",
+    "[0.3, -2.2, 0.9]",
+    "[1.5, 1.4, -0.6]",
+    "[-2.0, -0.7, 0.2]",
+    "[0.2, 0.4, 2.4]",
+];
+
+fn looks() -> (Vec<Look>, Tally, u64) {
+    let (mut all, mut cost) = (Vec::new(), 0);
+    for eye in EYES {
+        let view = format!("domain [-1.1, 1.1]^3\ncamera(position = {eye}, target = [0, 0, 0], fov = 55)");
+        let shot = shoot(&format!("{}\n{view}", Torus::TEXT), &options(32));
+        all.extend(shot.looks());
+        cost += shot.evaluations();
+    }
+    let tally = check::<Torus>(&all);
+    (all, tally, cost)
+}
+
+/// The ray's parameters where it enters and leaves the sphere of radius 1 around the torus.
+fn enclosing_sphere(ray: &Ray) -> Option<[f64; 2]> {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (o, d) = (ray.origin, ray.direction);
+    let (a, b, c) = (dot(d, d), dot(o, d), dot(o, o) - 1.0);
+    let root = (b * b - a * c).sqrt();
+    (root > 0.0).then(|| [((-b - root) / a).max(0.0), (-b + root) / a])
+}
+
+fn bisection<T: Plain>(ray: &Ray, _: [f64; 2]) -> Option<f64> {
+    let [near, far] = enclosing_sphere(ray)?;
+    let quartic = Quartic::<T>::from(ray, near);
+    let t = quartic.double_derivative_bisection(T::of(far - near) * quartic.speed())?;
+    Some(near + (t / quartic.speed()).to_f64())
+}
+
+fn newton<T: Plain>(ray: &Ray, _: [f64; 2]) -> Option<f64> {
+    let [near, _] = enclosing_sphere(ray)?;
+    let quartic = Quartic::<T>::from(ray, near);
+    let t = near + (quartic.clamped_newton() / quartic.speed()).to_f64();
+    // Accepted within a thousandth of the small radius around the tube.
+    let [x, y, z] = ray.at(t);
+    let off = (x.hypot(y) - 0.7).hypot(z) - 0.3;
+    (off.abs() <= 0.001 * 0.3).then_some(t)
+}
+
+fn first(name: &'static str, why: &'static str, find: [fn(&Ray, [f64; 2]) -> Option<f64>; 2]) -> Case {
+    let (looks, tally, cost) = looks();
+    let [single, double] = find.map(|find| faults(&looks, 1e-2, find));
+    println!("{name} {tally:?} {single} {double}");
+    Case {
+        name,
+        why,
+        single: single.to_string(),
+        double: double.to_string(),
+        imp: format!("{} proved, {} missed, {} unknown", tally.proved, tally.missed, tally.unknown),
+        cost: format!("{cost} evaluations"),
+    }
+}
+
+pub fn derivative_bisection() -> Case {
+    first("torus, double derivative bisection", "", [bisection::<f32>, bisection::<f64>])
+}
+
+pub fn clamped_newton() -> Case {
+    first("torus, Newton with clamped steps", "", [newton::<f32>, newton::<f64>])
+}
