@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use serde::Serialize;
 
-use crate::accuracy::report::number::serialize_pair;
+use crate::accuracy::number::serialize_pair;
 use crate::derive::extension::Extension;
 use crate::derive::extension::Formula;
 use crate::derive::extension::Symbols;
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn ranges_are_tight() {
         // x (10 - x) on [4, 6] has the range [24, 25].
-        let graph = "v0 = var x\nv1 = const 10\nv2 = sub v1, v0\nv3 = mul v0, v2\noutput f = v3\n";
+        let graph = "v0 = var x\nv1 = const 10\nv2 = sub v1, v0\nv3 = mul v0, v2\nout f = v3\n";
         let found = range(graph, &[(4.0, 6.0)]).unwrap();
         assert!(found.lo[0] <= 24.0 && found.lo[1] >= 24.0 && found.hi[0] <= 25.0 && found.hi[1] >= 25.0, "{found:?}");
         assert!(found.width()[0] > 1.0 - 1e-9 && found.width()[1] < 1.0 + 1e-9, "{found:?}");
@@ -172,6 +172,6 @@ mod tests {
 
     #[test]
     fn what_is_nowhere_defined_has_no_range() {
-        assert_eq!(range("v0 = var x\nv1 = sqrt v0\noutput f = v1\n", &[(-2.0, -1.0)]), None);
+        assert_eq!(range("v0 = var x\nv1 = sqrt v0\nout f = v1\n", &[(-2.0, -1.0)]), None);
     }
 }

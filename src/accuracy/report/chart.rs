@@ -135,8 +135,10 @@ fn draw(area: &Area, chart: &Chart) -> Result<(), Failure> {
         .y_desc(&chart.y)
         .axis_desc_style((FONT, 13))
         .draw()?;
-    context.draw_series(LineSeries::new(staircase(chart, &x, &y), RGBColor(150, 150, 155).stroke_width(2)))?;
-    let mut boxes = Vec::new();
+    let steps = staircase(chart, &x, &y);
+    let corners: Vec<(i32, i32)> = steps.iter().map(|step| context.backend_coord(step)).collect();
+    context.draw_series(LineSeries::new(steps, RGBColor(150, 150, 155).stroke_width(2)))?;
+    let mut boxes: Vec<Frame> = corners.windows(2).map(|ends| Frame::around(ends[0], ends[1], 2)).collect();
     let mut labels = Vec::new();
     for series in &chart.series {
         let color = COLORS[series.color % COLORS.len()];
@@ -147,7 +149,7 @@ fn draw(area: &Area, chart: &Chart) -> Result<(), Failure> {
             if point.front.is_some() {
                 plot.draw(&Circle::new(relative(&plot, at), reach, BLACK.stroke_width(1)))?;
             }
-            boxes.push(Frame { left: at.0 - reach, top: at.1 - reach, right: at.0 + reach, bottom: at.1 + reach });
+            boxes.push(Frame::around(at, at, reach));
             labels.extend(point.front.as_ref().map(|text| (at, text.as_str())));
         }
     }
@@ -208,6 +210,16 @@ struct Frame {
 }
 
 impl Frame {
+    /// The rectangle with these opposite corners, and a margin around it.
+    fn around(a: (i32, i32), b: (i32, i32), margin: i32) -> Self {
+        Self {
+            left: a.0.min(b.0) - margin,
+            top: a.1.min(b.1) - margin,
+            right: a.0.max(b.0) + margin,
+            bottom: a.1.max(b.1) + margin,
+        }
+    }
+
     fn meets(&self, other: &Frame) -> bool {
         self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
     }
@@ -225,8 +237,8 @@ fn write_labels(
     for (at, text) in labels {
         for text in [text.to_owned(), number(text)] {
             let (width, height) = ((text.chars().count() as f64 * LETTER_WIDTH) as i32, LETTERS as i32 + 2);
-            let rays = [(1, 0), (1, -1), (1, 1), (-1, 0), (-1, -1), (-1, 1), (0, -1), (0, 1)];
-            let places = [9, 16, 26, 40].into_iter().flat_map(|distance| {
+            let rays = [(1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (0, 1)];
+            let places = [10, 16, 26, 40].into_iter().flat_map(|distance| {
                 rays.map(|(dx, dy)| {
                     let left = match dx {
                         1 => at.0 + distance,

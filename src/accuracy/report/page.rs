@@ -10,7 +10,7 @@ use maud::html;
 use crate::accuracy::picture::LEGEND;
 use crate::accuracy::report::Report;
 use crate::accuracy::report::failed;
-use crate::accuracy::report::number::brief;
+use crate::accuracy::number::brief;
 use crate::accuracy::report::scene::kind;
 use crate::accuracy::report::table::Shown;
 use crate::accuracy::report::table::Table;
