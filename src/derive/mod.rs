@@ -5,7 +5,7 @@ mod affine;
 mod cost;
 mod elementary;
 mod ends;
-mod extension;
+pub mod extension;
 mod gradient;
 mod interval;
 pub mod lanes;
