@@ -6,9 +6,9 @@ use std::collections::BinaryHeap;
 use serde::Serialize;
 
 use crate::accuracy::number::serialize_pair;
-use crate::derive::extension::Extension;
-use crate::derive::extension::Formula;
-use crate::derive::extension::Symbols;
+use crate::derive::Extension;
+use crate::derive::Formula;
+use crate::derive::Symbols;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
