@@ -1,5 +1,6 @@
 //! One expression enclosed in every way that Imp knows: how wide, how many operations, how long.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 use std::time::Instant;
@@ -359,12 +360,17 @@ impl Bench<'_> {
 
     /// The order for a kernel that encloses the formula over boxes within the given ones.
     fn spec(&self, arithmetic: Arithmetic, rounding: Rounding) -> Spec {
-        let Subject { graph, root, inputs, .. } = self.subject;
-        let mut graph = graph.clone();
-        graph.add_output(String::new(), root);
+        let inputs = self.subject.inputs;
+        let mut graph = Graph::new();
+        // All inputs in their order, needed or not.
+        for name in self.subject.graph.variables() {
+            graph.var(name);
+        }
+        let root = graph.import(self.subject.graph, &[self.subject.root], &HashMap::new())[0];
+        graph.add_output("f", root);
         let ranges: Vec<Interval> = inputs.iter().map(|x| single(x.interval())).collect();
         let (graph, _) = passes::run(&graph, &ranges);
-        let root = graph.outputs().last().map_or(root, |&(_, value)| value);
+        let root = graph.output("f").unwrap_or(root);
         let names = graph.variables().to_vec();
         let wide = names.iter().zip(inputs).filter(|(_, x)| !x.interval().is_singleton()).map(|(name, _)| name.clone());
         Spec {

@@ -9,6 +9,7 @@ use crate::accuracy::level::BASELINE;
 use crate::accuracy::level::Engine;
 use crate::accuracy::level::Goal;
 use crate::accuracy::level::Level;
+use crate::accuracy::level::OWN_ENGINE;
 use crate::accuracy::level::Selection;
 use crate::accuracy::level::precision_name;
 use crate::accuracy::level::rounding_name;
@@ -133,6 +134,8 @@ pub struct Measured {
     pub errors: Errors,
     /// On the Pareto front of error and time.
     pub pareto: bool,
+    /// The same among the root finders of the literature alone.
+    pub pareto_finders: bool,
     /// On the Pareto front of the brackets' length and time.
     pub pareto_bracket: bool,
     #[serde(skip)]
@@ -321,6 +324,7 @@ impl<'a> Bench<'a> {
             unknown: drawn.unknown.iter().filter(|&&unknown| unknown).count() as u64,
             errors,
             pareto: false,
+            pareto_finders: false,
             pareto_bracket: false,
             pictures: Pictures {
                 color: runner.color(&drawn)?,
@@ -336,16 +340,21 @@ impl<'a> Bench<'a> {
         let mut rows: Vec<Row> = rows.collect();
         let baseline = rows.first().map_or_else(String::new, |row| row.name.clone());
         let unit = rows.first().and_then(Row::measured).map(|measured| measured.ms);
-        let numbers = |wanted: &dyn Fn(&Measured) -> Option<f64>| -> Vec<(f64, f64)> {
-            let number = |row: &Row| row.measured().and_then(|m| Some((wanted(m)?, m.ms)));
-            rows.iter().map(|row| number(row).unwrap_or((f64::NAN, f64::NAN))).collect()
+        // Who has no number takes no part.
+        let front = |rows: &[Row], number: &dyn Fn(&Row, &Measured) -> Option<f64>| {
+            let point = |row: &Row| row.measured().and_then(|m| Some((number(row, m)?, m.ms)));
+            let points: Vec<(f64, f64)> = rows.iter().map(|row| point(row).unwrap_or((f64::NAN, f64::NAN))).collect();
+            pareto::front(&points)
         };
-        let by_error = pareto::front(&numbers(&|m| Some(m.errors.error)));
-        let by_bracket = pareto::front(&numbers(&|m| m.errors.bracket_median));
-        for ((row, pareto), pareto_bracket) in rows.iter_mut().zip(by_error).zip(by_bracket) {
+        let by_error = front(&rows, &|_, m| Some(m.errors.error));
+        let of_finders = front(&rows, &|row, m| (row.engine != OWN_ENGINE).then_some(m.errors.error));
+        let by_bracket = front(&rows, &|_, m| m.errors.bracket_median);
+        for (index, row) in rows.iter_mut().enumerate() {
             if let Outcome::Measured(measured) = &mut row.outcome {
                 measured.ratio = unit.map(|unit| measured.ms / unit);
-                (measured.pareto, measured.pareto_bracket) = (pareto, pareto_bracket);
+                measured.pareto = by_error[index];
+                measured.pareto_finders = of_finders[index];
+                measured.pareto_bracket = by_bracket[index];
             }
         }
         let key = |row: &Row| row.measured().map_or((f64::INFINITY, f64::INFINITY), |m| (m.errors.error, m.ms));

@@ -8,6 +8,7 @@ use crate::accuracy::expression::Measured;
 use crate::accuracy::expression::Outcome;
 use crate::accuracy::report::Report;
 use crate::accuracy::report::chart::Chart;
+use crate::accuracy::report::chart::Front;
 use crate::accuracy::report::chart::Marker;
 use crate::accuracy::report::chart::Point;
 use crate::accuracy::report::chart::Series;
@@ -113,7 +114,7 @@ impl Report for ExpressionCost {
                 x: measured.excess[1],
                 y: measured.us,
                 filled: row.rounding == "outward",
-                front: measured.pareto.then(|| format!("{} {}", row.number, row.name)),
+                front: measured.pareto.then(|| Front { front: 0, label: format!("{} {}", row.number, row.name) }),
             };
             let marker = if name.starts_with("compiled") { Marker::Circle } else { Marker::of(index) };
             Series { points: finite.map(point).collect(), color: index, marker, name }
@@ -123,6 +124,7 @@ impl Report for ExpressionCost {
             x: "excess: width of the enclosure less that of the true range".to_owned(),
             y: "microseconds for all boxes".to_owned(),
             series: kinds.into_iter().enumerate().map(series).collect(),
+            fronts: vec!["all that hold the range".to_owned()],
         }]
     }
 
