@@ -6,7 +6,7 @@ mod choice;
 mod cost;
 mod elementary;
 mod ends;
-mod extension;
+pub mod extension;
 mod gradient;
 mod interval;
 pub mod lanes;
