@@ -1,5 +1,5 @@
-//! Expressions as Imp reads them, with every kind of answer that it gives: reference, compiled kernels of both formats,
-//! and plain points.
+//! Expressions as Imp reads them, with what it says of them: by reference arithmetic and by compiled kernels of both
+//! formats.
 
 use std::sync::Arc;
 
@@ -12,10 +12,8 @@ use imp::diagnostic::SourceMap;
 use imp::graph::Graph;
 use imp::graph::Value;
 use imp::graph::enclose;
-use imp::interpret::Interpreter;
 use imp::interval::Decorated;
 use imp::interval::Interval;
-use imp::kernel::Backend;
 use imp::kernel::Kernel;
 use imp::kernel::Packet;
 use imp::kernel::Real;
@@ -90,16 +88,15 @@ impl Formula {
         enclose(&self.graph, &[self.root], &inputs)[0]
     }
 
-    fn spec(&self, arithmetic: Arithmetic, rounding: Rounding) -> Spec {
-        let output = if arithmetic == Arithmetic::Point { Output::Value } else { Output::Enclosure };
+    fn spec(&self, rounding: Rounding) -> Spec {
         Spec {
             graph: Arc::new(self.graph.clone()),
             inputs: self.graph.variables().to_vec(),
             uniforms: Vec::new(),
-            outputs: vec![output(self.root)],
+            outputs: vec![Output::Enclosure(self.root)],
             domain: Vec::new(),
             promises: Vec::new(),
-            arithmetic,
+            arithmetic: Arithmetic::Interval,
             symbols: Vec::new(),
             rounding,
         }
@@ -107,32 +104,22 @@ impl Formula {
 
     /// The compiled kernel in single precision.
     pub fn single(&self) -> Boxes<f32> {
-        Boxes::new(session::backend().compile_f32(&self.spec(Arithmetic::Interval, Rounding::Outward)), self)
+        Boxes::new(session::backend().compile_f32(&self.spec(Rounding::Outward)), self)
     }
 
     /// The compiled kernel in double precision.
     pub fn double(&self) -> Boxes<f64> {
-        Boxes::new(session::backend().compile_f64(&self.spec(Arithmetic::Interval, Rounding::Outward)), self)
+        Boxes::new(session::backend().compile_f64(&self.spec(Rounding::Outward)), self)
     }
 
     /// Intervals as other programs compute them: every operation rounded to nearest.
     pub fn nearest_single(&self) -> Boxes<f32> {
-        Boxes::new(session::backend().compile_f32(&self.spec(Arithmetic::Interval, Rounding::Nearest)), self)
+        Boxes::new(session::backend().compile_f32(&self.spec(Rounding::Nearest)), self)
     }
 
     /// The same in double precision.
     pub fn nearest_double(&self) -> Boxes<f64> {
-        Boxes::new(session::backend().compile_f64(&self.spec(Arithmetic::Interval, Rounding::Nearest)), self)
-    }
-
-    /// The value at a point in double precision, every operation rounded to nearest.
-    pub fn plain(&self, values: &[f64]) -> f64 {
-        let kernel: Arc<dyn Kernel<f64>> =
-            Interpreter.compile_f64(&self.spec(Arithmetic::Point, Rounding::Nearest)).expect("a point program");
-        let inputs: Vec<Packet<f64>> = self.inputs(values).into_iter().map(Packet::splat).collect();
-        let mut outputs = [Packet::default()];
-        kernel.run(&[], &inputs, &mut outputs);
-        outputs[0].lanes()[0]
+        Boxes::new(session::backend().compile_f64(&self.spec(Rounding::Nearest)), self)
     }
 }
 

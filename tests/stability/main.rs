@@ -7,8 +7,6 @@ mod expressions;
 mod first_root;
 mod formula;
 mod functions;
-#[path = "../support/oracle.rs"]
-mod oracle;
 mod plain;
 mod poles;
 mod rays;
@@ -56,7 +54,7 @@ cases! {
     rays "Rays that graze or come from afar":
         near_tangent touching grazing far_away small large shifted expanded zoomed_boxes zoomed_picture;
     surfaces "Surfaces that taper, touch and cross":
-        steiner_axes steiner_on_axis teardrop_neck heart_dent sextic_nodes decic_nodes crosscap power_200 squared;
+        steiner_axes steiner_below_axes steiner_on_axes teardrop_neck teardrop_point heart heart_normals sextic_nodes decic_nodes crosscap power_200 squared;
     poles "Poles without a root":
         plane tangent shell inverse;
     first_root "First roots":
