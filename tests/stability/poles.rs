@@ -35,22 +35,24 @@ pole!(Shell, "1 / (x^2 + y^2 + z^2 - 1) = 0\ndomain [-1.2, 1.2]^3", |x, y, z| {
 fn without_root<S: Surface>(name: &'static str, why: &'static str) -> Case {
     let survey = Survey::new::<S>(&[String::new()], &options(32));
     let [single, double] = survey.marched::<S>();
-    println!("{:?} {single} {double}", survey.tally);
     assert!(survey.tally.proved == 0 && survey.looks.iter().all(|look| look.depth.is_none()));
     assert!(single.invented > 100 && double.invented > 100, "{single}; {double}");
     survey.case(name, why, [single, double])
 }
 
 pub fn plane() -> Case {
-    without_root::<Plane>("1 / (x - 0.3) = 0", "")
+    without_root::<Plane>(
+        "1 / (x - 0.3) = 0",
+        "The value jumps from -inf to inf; Imp sees that the numerator has no zero.",
+    )
 }
 
 pub fn tangent() -> Case {
-    without_root::<Tangent>("tan x = 0 on [1, 2]", "")
+    without_root::<Tangent>("tan x = 0 on [1, 2]", "The same at pi/2; the numerator is sin x.")
 }
 
 pub fn shell() -> Case {
-    without_root::<Shell>("1 / (x^2 + y^2 + z^2 - 1) = 0", "")
+    without_root::<Shell>("1 / (x^2 + y^2 + z^2 - 1) = 0", "A sphere of poles looks like a sphere.")
 }
 
 struct Inverse;
@@ -73,6 +75,12 @@ impl Surface for Inverse {
 
 pub fn inverse() -> Case {
     let survey = Survey::new::<Inverse>(&["domain [-2, 3] x [-1.8, 1.8] x [-2.5, 2.5]".to_owned()], &options(40));
-    println!("{:?}", survey.tally);
-    survey.case("1 / (x - y^2) = z", "", survey.marched::<Inverse>())
+    let [single, double] = survey.marched::<Inverse>();
+    assert!(survey.tally.proved > 400 && survey.tally.unknown < 10, "{:?}", survey.tally);
+    assert!(single.wrong > 100 && double.wrong > 100 && double.invented > 50, "{single}; {double}");
+    survey.case(
+        "1 / (x - y^2) = z",
+        "A pole along x = y^2 in front of the sheets, or without one behind it.",
+        [single, double],
+    )
 }
