@@ -9,14 +9,17 @@
 //! - [`Interval`] and its operations, in one file per group;
 //! - [`Verdict`]: answers to questions about sets;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
-//! - [`Affine`]: affine forms with a bounded number of noise symbols.
+//! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
+//! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
 
 mod affine;
+mod affine_terms;
 mod arith;
 mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod modal;
 mod power;
 pub mod round;
 mod set_ops;
@@ -27,8 +30,10 @@ mod verdict;
 #[cfg(test)]
 mod tests;
 
-pub use affine::Affine;
+pub use affine::{Affine, Form, FullAffine};
+pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
+pub use modal::Modal;
 pub use text::decimal;
 pub use verdict::Verdict;
 

@@ -44,6 +44,11 @@ impl<T: Real> Batch<T> {
         self.outputs.len() / self.output_slots * T::LANES
     }
 
+    /// Input slots of a lane.
+    pub fn input_slots(&self) -> usize {
+        self.input_slots
+    }
+
     /// Output slots of a lane.
     pub fn output_slots(&self) -> usize {
         self.output_slots

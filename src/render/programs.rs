@@ -277,13 +277,13 @@ struct Formulas {
 }
 
 /// A truth value less one half: positive where true, negative where false.
-fn less_half(graph: &mut Graph, condition: Value) -> Value {
+pub fn less_half(graph: &mut Graph, condition: Value) -> Value {
     let half = graph.constant(BigRational::new(1.into(), 2.into()));
     graph.sub(condition, half)
 }
 
 /// Runs the passes over a derived graph, which has terms that its source had not.
-fn simplify(
+pub fn simplify(
     mut graph: Graph,
     outputs: Vec<Output>,
     domain: Vec<(Value, Interval)>,

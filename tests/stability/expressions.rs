@@ -37,7 +37,11 @@ pub fn rump() -> Case {
         why: "Terms of 8e36 cancel to -0.827; their rounding errors alone are 1e21, and more digits give other wrong numbers before the right one.",
         single: format!("{single:.3e}"),
         double: format!("{double:.3e}"),
-        imp: format!("[{:.1e}, {:.1e}], which holds the value and says that nothing is known of it", said.lo(), said.hi()),
+        imp: format!(
+            "[{:.1e}, {:.1e}], which holds the value and says that nothing is known of it",
+            said.lo(),
+            said.hi()
+        ),
         cost: String::new(),
     }
 }
@@ -289,7 +293,12 @@ pub fn difference_of_roots() -> Case {
         why: "Both roots agree in all digits but the last (x = 1e8 for f32).",
         single: format!("{single}"),
         double: format!("{double:.3e}"),
-        imp: format!("[{:.2e}, {:.2e}]; as 1 / (sqrt(x + 1) + sqrt(x)) {:.6e}, all digits right", naive.lo(), naive.hi(), stable.mid()),
+        imp: format!(
+            "[{:.2e}, {:.2e}]; as 1 / (sqrt(x + 1) + sqrt(x)) {:.6e}, all digits right",
+            naive.lo(),
+            naive.hi(),
+            stable.mid()
+        ),
         cost: String::new(),
     }
 }
@@ -311,7 +320,12 @@ pub fn quadratic_formula() -> Case {
         why: "b - sqrt(b^2 - 1) subtracts equal numbers; the root is 5e-9.",
         single: format!("{single}"),
         double: format!("{double:.3e}"),
-        imp: format!("[{:.2e}, {:.2e}]; as 1 / (b + sqrt(b^2 - 1)) {:.6e}, all digits right", naive.lo(), naive.hi(), stable.mid()),
+        imp: format!(
+            "[{:.2e}, {:.2e}]; as 1 / (b + sqrt(b^2 - 1)) {:.6e}, all digits right",
+            naive.lo(),
+            naive.hi(),
+            stable.mid()
+        ),
         cost: String::new(),
     }
 }

@@ -109,5 +109,9 @@ fn the_page_is_up_to_date() {
     for (new, old) in page.lines().zip(written.lines()) {
         assert_eq!(new, old, "docs/hard-cases.md is out of date; IMP_BLESS=1 renews it");
     }
-    assert_eq!(page.lines().count(), written.lines().count(), "docs/hard-cases.md is out of date; IMP_BLESS=1 renews it");
+    assert_eq!(
+        page.lines().count(),
+        written.lines().count(),
+        "docs/hard-cases.md is out of date; IMP_BLESS=1 renews it"
+    );
 }

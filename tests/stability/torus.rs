@@ -107,7 +107,13 @@ impl<T: Plain> Quartic<T> {
         let mut t = T::int(0);
         for _ in 0..60 {
             let step = self.value(t) / self.slope(t);
-            t = t - if step > most { most } else if step < -most { -most } else { step };
+            t = t - if step > most {
+                most
+            } else if step < -most {
+                -most
+            } else {
+                step
+            };
         }
         t
     }

@@ -4,6 +4,7 @@ mod affine;
 mod arithmetic;
 mod decorations;
 mod elementary;
+mod modal;
 mod powers;
 mod rounding;
 mod special;
