@@ -13,10 +13,10 @@ use std::sync::PoisonError;
 
 use crate::derive;
 use crate::derive::Arithmetic;
+use crate::derive::Formula;
 use crate::derive::Output;
 use crate::derive::Rounding;
 use crate::derive::Spec;
-use crate::derive::Formula;
 use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;

@@ -1,10 +1,11 @@
-//! Expressions as Imp reads them, with what it says of them: by reference arithmetic and by compiled kernels of both
-//! formats.
+//! Expressions as Imp reads them, with what it says of them: by reference arithmetic in every extension and by compiled
+//! kernels of both formats.
 
 use std::sync::Arc;
 
 use imp::derive;
 use imp::derive::Arithmetic;
+use imp::derive::Extension;
 use imp::derive::Output;
 use imp::derive::Rounding;
 use imp::derive::Spec;
@@ -102,14 +103,15 @@ impl Formula {
         }
     }
 
-    /// The compiled kernel in single precision.
-    pub fn single(&self) -> Boxes<f32> {
-        Boxes::new(session::backend().compile_f32(&self.spec(Rounding::Outward)), self)
-    }
-
-    /// The compiled kernel in double precision.
-    pub fn double(&self) -> Boxes<f64> {
-        Boxes::new(session::backend().compile_f64(&self.spec(Rounding::Outward)), self)
+    /// Everything that encloses the formula and must hold.
+    pub fn answers(&self) -> Answers {
+        let spec = self.spec(Rounding::Outward);
+        Answers {
+            reference: derive::Formula::new(&self.graph, self.root),
+            single: Boxes::new(session::backend().compile_f32(&spec), self),
+            double: Boxes::new(session::backend().compile_f64(&spec), self),
+            variables: self.inputs(&[0, 1, 2]),
+        }
     }
 
     /// Intervals as other programs compute them: every operation rounded to nearest.
@@ -120,6 +122,32 @@ impl Formula {
     /// The same in double precision.
     pub fn nearest_double(&self) -> Boxes<f64> {
         Boxes::new(session::backend().compile_f64(&self.spec(Rounding::Nearest)), self)
+    }
+}
+
+/// The reference in every extension, and the compiled kernels of both formats.
+pub struct Answers {
+    reference: derive::Formula,
+    single: Boxes<f32>,
+    double: Boxes<f64>,
+    variables: Vec<usize>,
+}
+
+impl Answers {
+    /// The enclosure over a box by the reference in each extension and by each kernel, under their names.
+    pub fn each(&self, values: &[Interval]) -> Vec<(&'static str, Interval)> {
+        let inputs: Vec<Decorated> = self.variables.iter().map(|&i| Decorated::new(values[i])).collect();
+        let reference = |&way: &Extension| (way.name(), self.reference.enclose(way, &inputs).interval());
+        let mut all: Vec<(&str, Interval)> = Extension::ALL.iter().map(reference).collect();
+        all.extend([("kernel in f32", self.single.enclose(values)), ("kernel in f64", self.double.enclose(values))]);
+        all
+    }
+
+    /// Asserts that each of them is as it must be.
+    pub fn all(&self, values: &[Interval], holds: impl Fn(Interval) -> bool) {
+        for (name, interval) in self.each(values) {
+            assert!(holds(interval), "{name} over {values:?}: {interval}");
+        }
     }
 }
 
