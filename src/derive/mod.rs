@@ -6,7 +6,7 @@ mod choice;
 mod cost;
 mod elementary;
 mod ends;
-pub mod extension;
+mod extension;
 mod gradient;
 mod interval;
 pub mod lanes;
