@@ -54,8 +54,8 @@ fn quadrant((sin, cos): (f64, f64)) -> u32 {
     }
 }
 
-/// Bounds of sine or cosine between its extremes, from the rounded values at both ends: `peak` and `trough` tell whether
-/// the extremes are taken.
+/// Bounds of sine or cosine between its extremes, from the rounded values at both ends: `peak` and `trough` tell
+/// whether the extremes are taken.
 fn wave(x: Interval, [a, b]: [f64; 2], peak: bool, trough: bool) -> Interval {
     // The values at 0 are exact, and no others (Lindemann).
     let (a_exact, b_exact) = (x.lo == 0.0, x.hi == 0.0);
