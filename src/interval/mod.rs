@@ -2,14 +2,17 @@
 //!
 //! An [`Interval`] is a closed connected set of real numbers. An operation returns an enclosure of all values that the
 //! function takes on the part of the argument that lies in its domain. Bounds of arithmetic, of roots and of small
-//! rational powers are the tightest that `f64` has; those of elementary functions are at most two units in the last
-//! place away from the values, on each side.
+//! rational powers are the tightest that `f64` has; those of elementary functions are at most one unit in the last place
+//! wider than that on each side. `docs/conformance.md` lists every operation of the standard.
 //!
 //! - [`round`]: directed rounding;
 //! - [`Interval`] and its operations, in one file per group;
-//! - [`Verdict`]: answers to questions about sets;
+//! - [`Verdict`]: answers to questions about numbers of which only a set is known; [`Overlap`] and the relations of the
+//!   standard compare the sets themselves;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
+//! - both read from text, the literals of the standard, with a [`LiteralError`] for what is none;
 //! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
+//! - [`Linear`]: functions between two parallel lines, with which affine forms pass through them;
 //! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
 
 mod affine;
@@ -21,6 +24,8 @@ mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod linear;
+mod linear_functions;
 mod modal;
 mod parse;
 mod power;
@@ -38,6 +43,7 @@ mod tests;
 pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
+pub use linear::Linear;
 pub use modal::Modal;
 pub use parse::LiteralError;
 pub use relations::Overlap;

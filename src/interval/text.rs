@@ -81,9 +81,13 @@ fn above(x: f64, digits: usize) -> String {
     let nearest = format!("{x:.*e}", digits - 1);
     let (significand, exponent) = nearest.split_once('e').unwrap_or((&nearest, "0"));
     let mut units: BigInt = significand.replace('.', "").parse().unwrap_or_default();
-    let unit = exponent.parse::<i32>().unwrap_or_default() - (digits as i32 - 1);
-    let value = |units: &BigInt| BigRational::from(units.clone()) * BigRational::from(BigInt::from(10)).pow(unit);
-    if BigRational::from_float(x).is_some_and(|x| value(&units) < x) {
+    let mut unit = exponent.parse::<i32>().unwrap_or_default() - (digits as i32 - 1);
+    let value = BigRational::from(units.clone()) * BigRational::from(BigInt::from(10)).pow(unit);
+    if BigRational::from_float(x).is_some_and(|x| value < x) {
+        if units == -BigInt::from(10).pow(digits as u32 - 1) {
+            // From -100 the way is to -99.9.
+            (units, unit) = (units * 10, unit - 1);
+        }
         units += 1;
     }
     let text = units.to_string();

@@ -106,6 +106,10 @@ impl Interval {
     /// Whether an odd multiple of pi/2 may be a member: exact but for intervals that are about as long as a turn or
     /// longer, which have one anyway.
     pub(super) fn has_tangent_pole(self) -> bool {
+        let principal = Self { lo: -Self::HALF_PI.lo, hi: Self::HALF_PI.lo };
+        if principal.contains_interval(self) {
+            return false;
+        }
         Turn::of(self).is_none_or(|turn| turn.enters(1) || turn.enters(3))
     }
 }

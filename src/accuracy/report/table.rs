@@ -1,6 +1,6 @@
 //! Tables: columns with their meaning, rows of cells; as text for a terminal and as CSV. The page shows the same.
 
-use crate::accuracy::report::number::brief;
+use crate::accuracy::number::brief;
 use crate::interval::decimal;
 
 /// Where a column is shown. CSV has all of them.
@@ -127,7 +127,8 @@ impl Table {
             texts.push(shown.iter().map(|&c| line.cells[c].brief()).collect());
         }
         // A failure takes the place of all cells behind the last text.
-        let named = |line: &Line| shown.iter().rposition(|&c| matches!(line.cells[c], Cell::Text(_))).map_or(0, |c| c + 1);
+        let named =
+            |line: &Line| shown.iter().rposition(|&c| matches!(line.cells[c], Cell::Text(_))).map_or(0, |c| c + 1);
         let mut widths = vec![0; shown.len()];
         for (row, text) in texts.iter().enumerate() {
             let failed = row.checked_sub(1).map(|row| &self.lines[row]).filter(|line| line.failure.is_some());
