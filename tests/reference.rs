@@ -24,26 +24,43 @@ use reference::HEADER;
 use reference::Operation;
 use reference::Operation::*;
 use reference::Oracle;
+use reference::REVERSE;
 use reference::Tally;
 
 const P: usize = 256;
 const RM: RoundingMode = RoundingMode::ToEven;
 
+fn cases() -> u64 {
+    std::env::var("IMP_TEST_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(150)
+}
+
 #[test]
 fn every_operation_encloses_its_values_tightly() {
-    let cases = std::env::var("IMP_TEST_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(150);
     let tallies: Vec<(Operation, Tally)> = Operation::all()
         .into_par_iter()
-        .map(|op| (op, Tally::of(op, 1, cases, &mut Values { cc: Consts::new().expect("constants") })))
+        .map(|op| (op, Tally::of(op, 1, cases(), &mut Values { cc: Consts::new().expect("constants") })))
         .collect();
     println!("{HEADER}");
     for (op, tally) in &tallies {
-        println!("{}", tally.row(*op));
+        println!("{}", tally.row(&format!("{op:?}")));
     }
     for (op, tally) in tallies {
         assert_eq!(tally.escapes, 0, "{}", tally.escape.unwrap_or_default());
         let worst = tally.lower.max(tally.upper);
         assert!(worst <= op.allowance(), "{worst} units: {}", tally.widest.unwrap_or_default());
+    }
+}
+
+#[test]
+fn reverse_operations_find_every_solution() {
+    let tallies: Vec<Tally> = REVERSE
+        .par_iter()
+        .map(|op| Tally::of_reverse(op, 2, cases(), &mut Values { cc: Consts::new().expect("constants") }))
+        .collect();
+    for (op, tally) in REVERSE.iter().zip(tallies) {
+        println!("{}", tally.row(op.name));
+        assert!(tally.members > cases() / 2, "{} has hardly been asked", op.name);
+        assert_eq!(tally.escapes, 0, "{}", tally.escape.unwrap_or_default());
     }
 }
 
@@ -115,6 +132,22 @@ fn limit_of_power(x: f64, p: i32, q: u32) -> f64 {
     if x.is_sign_negative() && p % 2 != 0 { -size } else { size }
 }
 
+impl Values {
+    fn value(&mut self, op: Op, x: f64, y: f64) -> BigFloat {
+        oracle::value(op, x, y, &mut self.cc).expect("a value of high precision")
+    }
+
+    /// e^t - 1, for |t| < 2^-90 by three terms of the series, which are off by less than 2^-270 of it.
+    fn expm1_of(&mut self, t: &BigFloat) -> BigFloat {
+        let p = P + 64;
+        if t.abs() < big(2f64.powi(-90)) {
+            let tail = big(1.0).add(&t.div(&big(3.0), p, RM), p, RM).mul(t, p, RM).div(&big(2.0), p, RM);
+            return big(1.0).add(&tail, p, RM).mul(t, p, RM);
+        }
+        t.exp(p + 128, RM, &mut self.cc).sub(&big(1.0), p + 128, RM)
+    }
+}
+
 impl Oracle for Values {
     fn bracket(&mut self, op: Operation, args: &[f64]) -> Option<(f64, f64)> {
         let at = |i: usize| args.get(i).copied().unwrap_or(0.0);
@@ -130,11 +163,12 @@ impl Oracle for Values {
             Floor => limit(x.floor()),
             Ceil => limit(x.ceil()),
             Round => limit(x.round()),
+            RoundTiesEven => limit(x.round_ties_even()),
             Trunc => limit(x.trunc()),
             Add if !finite => limit(x + y),
-            Add => exact(&a().add_full_prec(&big(y))),
+            Add => exact(&oracle::sum(&a(), &big(y))),
             Sub if !finite => limit(x - y),
-            Sub => exact(&a().sub_full_prec(&big(y))),
+            Sub => exact(&oracle::sum(&a(), &big(-y))),
             // 0 times an infinite end: 0, as all products of 0 and a member are.
             Mul if x == 0.0 || y == 0.0 => limit(0.0),
             Mul if !finite => limit(x * y),
@@ -144,18 +178,20 @@ impl Oracle for Values {
             // An infinite end of the addend settles the sum.
             MulAdd if z.is_infinite() || x == 0.0 || y == 0.0 => limit(z),
             MulAdd if !finite => limit(x * y),
-            MulAdd => exact(&a().mul_full_prec(&big(y)).add_full_prec(&big(z))),
+            MulAdd => exact(&oracle::sum(&a().mul_full_prec(&big(y)), &big(z))),
             Recip if !finite || x == 0.0 => limit(1.0 / x),
             Recip => exact(&big(1.0).div(&a(), P, RM)),
             Sqr if !finite => limit(f64::INFINITY),
             Sqr => exact(&power(&a(), 2)),
+            Rsqrt if !finite || x == 0.0 => limit(1.0 / x),
+            Rsqrt => nearly(&big(1.0).div(&a().sqrt(P + 64, RM), P, RM)),
             Sqrt if !finite || x == 0.0 => limit(x),
             Sqrt => exact(&a().sqrt(P, RM)),
             Cbrt if !finite || x == 0.0 => limit(x),
             Cbrt => exact(&a().cbrt(P, RM)),
             Hypot if !finite => limit(f64::INFINITY),
             Hypot => {
-                let square = power(&a(), 2).add_full_prec(&power(&big(y), 2));
+                let square = oracle::sum(&power(&a(), 2), &power(&big(y), 2));
                 // A root that rounds to a `f64` may still lie beside it: the square tells.
                 let (down, up) = exact(&square.sqrt(P, RM))?;
                 match square.cmp(&power(&big(down), 2))? {
@@ -173,20 +209,25 @@ impl Oracle for Values {
             PowInt(n) if !finite || x == 0.0 => limit(if n == 0 { 1.0 } else { limit_of_power(x, n, 1) }),
             PowInt(n) if n >= 0 => exact(&power(&a(), n.unsigned_abs())),
             PowInt(n) => exact(&big(1.0).div(&power(&a(), n.unsigned_abs()), P, RM)),
+            Rootn(n) => self.bracket(reference::root(n), args),
             PowRatio(p, q) if !finite || x == 0.0 => limit(limit_of_power(x, p, q)),
             Pow if !finite || x == 0.0 || y == 0.0 => limit(x.powf(y)),
             Exp | Exp2 | Exp10 | Cosh | Cos if x == 0.0 => limit(1.0),
             Acos if x == 0.0 => limit(FRAC_PI_2),
             Ln | Log2 | Log10 if x == 0.0 => limit(f64::NEG_INFINITY),
-            Expm1 | Log1p | Sin | Tan | Asin | Atan | Sinh | Tanh | Asinh | Atanh if x == 0.0 => limit(0.0),
+            Expm1 | Exp2m1 | Exp10m1 | Log1p | Log2p1 | Log10p1 | Sin | Tan | Asin | Atan | Sinh | Tanh | Asinh | Atanh
+                if x == 0.0 =>
+            {
+                limit(0.0)
+            }
             Exp | Exp2 | Exp10 if !finite => limit(x.exp()),
-            Expm1 if !finite => limit(x.exp_m1()),
-            Ln | Log2 | Log10 | Acosh | Log1p | Sinh | Asinh if !finite => limit(x),
+            Expm1 | Exp2m1 | Exp10m1 if !finite => limit(x.exp_m1()),
+            Ln | Log2 | Log10 | Acosh | Log1p | Log2p1 | Log10p1 | Sinh | Asinh if !finite => limit(x),
             Cosh if !finite => limit(x.abs()),
             Tanh if !finite => limit(x.signum()),
             Atan if !finite => limit(x.atan()),
             Sin | Cos | Tan if !finite => None,
-            Log1p if x == -1.0 => limit(f64::NEG_INFINITY),
+            Log1p | Log2p1 | Log10p1 if x == -1.0 => limit(f64::NEG_INFINITY),
             Atanh if x.abs() == 1.0 => limit(x * f64::INFINITY),
             Asin if x.abs() == 1.0 => limit(x.asin()),
             Acos if x.abs() == 1.0 => limit(x.acos()),
@@ -194,7 +235,12 @@ impl Oracle for Values {
             // Between the limits of the two ends, which are at other corners.
             Atan2 if x.is_infinite() && y.is_infinite() => None,
             Atan2 if !finite || x == 0.0 || y == 0.0 => limit(x.atan2(y)),
-            _ => nearly(&oracle::value(elementary(op), x, y, &mut self.cc).expect("a value of high precision")),
+            // Through e^t - 1 and ln(1 + x), whose small values the oracle keeps.
+            Exp2m1 => nearly(&self.expm1_of(&a().mul(&self.cc.ln_2(P + 64, RM), P + 64, RM))),
+            Exp10m1 => nearly(&self.expm1_of(&a().mul(&self.cc.ln_10(P + 64, RM), P + 64, RM))),
+            Log2p1 => nearly(&self.value(Op::Log1p, x, y).div(&self.cc.ln_2(P, RM), P, RM)),
+            Log10p1 => nearly(&self.value(Op::Log1p, x, y).div(&self.cc.ln_10(P, RM), P, RM)),
+            _ => nearly(&self.value(elementary(op), x, y)),
         }
     }
 
@@ -202,9 +248,9 @@ impl Oracle for Values {
         // 2/pi to 1400 bits times a `f64` below 2^1024: no multiple of pi/2 but 0 is nearly as close to a `f64`.
         let half_pi = self.cc.pi(1400, RM).div(&big(2.0), 1400, RM);
         let [first, last] = [lo, hi].map(|x| big(x).div(&half_pi, 1400, RM).floor());
-        let small = |x: &BigFloat| exact(x).map_or(0, |(down, _)| down as u32);
         let turns = first.div(&big(4.0), 1400, RM).floor();
-        (small(&first.sub_full_prec(&turns.mul_full_prec(&big(4.0)))), small(&last.sub_full_prec(&first)))
+        let difference = |x: &BigFloat, y: &BigFloat| exact(&oracle::sum(x, &y.neg())).map_or(0, |(down, _)| down as u32);
+        (difference(&first, &turns.mul_full_prec(&big(4.0))), difference(&last, &first))
     }
 }
 
