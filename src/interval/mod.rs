@@ -12,6 +12,7 @@
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
 //! - both read from text, the literals of the standard, with a [`LiteralError`] for what is none;
 //! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
+//! - [`Linear`]: functions between two parallel lines, with which affine forms pass through them;
 //! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
 
 mod affine;
@@ -23,6 +24,8 @@ mod decoration;
 mod elementary;
 mod exact;
 mod integer;
+mod linear;
+mod linear_functions;
 mod modal;
 mod parse;
 mod power;
@@ -40,6 +43,7 @@ mod tests;
 pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
+pub use linear::Linear;
 pub use modal::Modal;
 pub use parse::LiteralError;
 pub use relations::Overlap;
