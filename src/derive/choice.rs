@@ -23,8 +23,9 @@ use crate::graph::Value;
 use crate::interval::Decorated;
 use crate::interval::Interval;
 
-/// Halvings of the domain: cells of 1/32 of it, about the blocks of 16 pixels at which a renderer turns to derivatives.
-const LEVELS: u32 = 5;
+/// Halvings of the domain: cells of 1/64 of it, about 8 pixels of a picture, amid those that a renderer tries with their
+/// derivative.
+const LEVELS: u32 = 6;
 
 /// Cells of a level that are cut, at most, and how many operations of the graph all of a trial may evaluate, so that it
 /// takes a few milliseconds.
@@ -37,7 +38,7 @@ const LEAST_SAMPLES: usize = 4;
 /// In operations of a program on one lane: what a cell costs that is left at the finest level, and what compiling an
 /// operation costs.
 const LEFT: f64 = 1600.0;
-const COMPILATION: f64 = 10_000.0;
+const COMPILATION: f64 = 20_000.0;
 
 /// What one arithmetic would have to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,12 +70,9 @@ impl fmt::Display for Choice {
         };
         write!(
             f,
-            "{verdict}: on trial cells of the domain, affine forms leave {:.2} of those that intervals leave and test {:.2} \
-             as many, with {} operations each against {}; in all {ratio:.2} of the operations",
-            affine.left / interval.left.max(1.0),
-            affine.tested / interval.tested.max(1.0),
-            affine.operations,
-            interval.operations,
+            "{verdict}: on trial, affine forms would test {:.0} cells and leave {:.0}, intervals {:.0} and {:.0}, with {} \
+             operations a cell against {}; in all {ratio:.2} of the work",
+            affine.tested, affine.left, interval.tested, interval.left, affine.operations, interval.operations,
         )
     }
 }
@@ -126,7 +124,8 @@ fn program(
     parameters: &[(&str, Interval)],
     arithmetic: Arithmetic,
 ) -> LaneProgram {
-    let owned = |list: &[(&str, Interval)]| -> Vec<String> { list.iter().map(|(name, _)| (*name).to_owned()).collect() };
+    let owned =
+        |list: &[(&str, Interval)]| -> Vec<String> { list.iter().map(|(name, _)| (*name).to_owned()).collect() };
     let mut graph = graph.clone();
     let ranges = domain.iter().map(|&(name, range)| (graph.var(name), range)).collect();
     let spec = Spec {
