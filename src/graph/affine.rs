@@ -173,11 +173,11 @@ fn angle<C: Coefficients>(y: &Ranged<C>, x: &Ranged<C>) -> Option<Form<C>> {
         let (slope, range) = ranged(quotient(x, y), x.1 / y.1);
         slope.apply(&Linear::atan(range))
     };
-    let aside = !y.1.contains(0.0) && !(x.1.lo() > y.1.mig());
+    let aside = x.1.lo() <= y.1.mig();
     match () {
         _ if x.1.is_empty() || y.1.is_empty() => None,
         _ if aside && y.1.lo() > 0.0 => Some(Form::constant(Interval::HALF_PI) - arctangent(x, y)),
-        _ if aside => Some(Form::constant(-Interval::HALF_PI) - arctangent(x, y)),
+        _ if aside && y.1.hi() < 0.0 => Some(Form::constant(-Interval::HALF_PI) - arctangent(x, y)),
         _ if x.1.lo() > 0.0 => Some(arctangent(y, x)),
         _ => None,
     }

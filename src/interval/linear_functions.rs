@@ -80,7 +80,7 @@ impl Linear {
         // |f'| is |r| |x|^(r - 1).
         let distance = |s: f64| (s / r).abs().powf(1.0 / (r - 1.0));
         // f'' is r (r - 1) x^(r - 2) to the right of 0; to the left f is the mirror image of that, or its negative.
-        let right = Bend::convex_if(r < 0.0 || r > 1.0);
+        let right = Bend::convex_if(!(0.0..=1.0).contains(&r));
         let even = p % 2 == 0;
         let left = if even { right } else { right.reverse() };
         match () {
@@ -113,7 +113,7 @@ impl Linear {
         }
         let slope = |x: Interval| c * x.pow(c - ONE);
         let distance = |s: f64| (s / exponent).abs().powf(1.0 / (exponent - 1.0));
-        Curve { value, slope, distance }.bent(x, Bend::convex_if(exponent < 0.0 || exponent > 1.0), 1.0)
+        Curve { value, slope, distance }.bent(x, Bend::convex_if(!(0.0..=1.0).contains(&exponent)), 1.0)
     }
 
     /// [`Interval::exp`] between lines.

@@ -126,8 +126,9 @@ impl State {
         let value = self.workspace.value(value, &self.bindings)?;
         let name = name.as_str();
         self.workspace.forget(name);
-        self.bindings.insert(name.to_owned(), Decorated::new(value));
-        Ok(format!("{name} = {value}"))
+        self.bindings.insert(name.to_owned(), value);
+        let natural = value == Decorated::new(value.interval());
+        Ok(if natural { format!("{name} = {}", value.interval()) } else { format!("{name} = {value}") })
     }
 
     /// Resolves an expression over the session's boxes.
