@@ -149,7 +149,8 @@ fn auto_chooses_by_counting() {
         (superquadric, 1.25, Arithmetic::Interval),
     ] {
         let range = Interval::new(-radius, radius).expect("a range");
-        let choice = choose(&graph, root, &["x", "y", "z"].map(|name| (name, range)), &[]).expect("small enough to try");
+        let choice =
+            choose(&graph, root, &["x", "y", "z"].map(|name| (name, range)), &[]).expect("small enough to try");
         assert_eq!(choice.arithmetic, arithmetic, "{choice}");
         let again = choose(&graph, root, &["x", "y", "z"].map(|name| (name, range)), &[]);
         assert_eq!(again, Some(choice), "the same input, the same choice");
