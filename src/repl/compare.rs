@@ -1,7 +1,7 @@
 //! `:compare` and `:bisect`: what the arithmetics make of one expression, at once and in parts.
 
 use crate::derive::Extension;
-use crate::interval::decimal;
+use crate::repl::plot::short;
 use crate::repl::state::Prepared;
 use crate::repl::state::State;
 use crate::repl::table::table;
@@ -40,9 +40,9 @@ pub fn bisect(state: &mut State, expression: &Snippet) -> Result<String, Message
     let mut parts = 1;
     while parts <= MOST_PARTS && once * f64::from(parts).powi(free) <= MAX_OPERATIONS {
         let interval = choice.enclose_in_parts(&prepared.formula, &prepared.boxes, parts).value.interval();
-        let ratio = before / interval.width();
-        let ratio = if ratio.is_finite() { decimal((1000.0 * ratio).round() / 1000.0) } else { String::new() };
-        rows.push([parts.to_string(), interval.to_string(), width(interval), ratio]);
+        let gain = before - interval.width();
+        let gain = if gain.is_finite() { short(gain) } else { String::new() };
+        rows.push([parts.to_string(), interval.to_string(), width(interval), gain]);
         before = interval.width();
         if free == 0 {
             break;

@@ -571,7 +571,7 @@ mod tests {
         workspace.define(&Snippet::whole("line 1", "fn f(u) = u^2 - 1"), &given).unwrap();
         let expression = workspace.expression(&Snippet::whole("line 2", "f(x)"), &["x"], Reading::Value).unwrap();
         assert_eq!(expression.variables(), ["x"]);
-        assert_eq!(expression.enclose(&expression.boxes(&given)).to_string(), "[-1, 3] com");
+        assert_eq!(expression.enclose(&expression.boxes(&given)).to_string(), "[-1, 3]_com");
         assert_eq!(expression.shortfall(&expression.boxes(&given)), None);
     }
 
@@ -608,7 +608,7 @@ mod tests {
             assert_eq!(value(text).unwrap().interval(), Interval::new(lo, hi).unwrap(), "{text}");
         }
         assert!(value("[empty]").unwrap().interval().is_empty());
-        assert_eq!(value("[1, 2]_def").unwrap().to_string(), "[1, 2] def");
+        assert_eq!(value("[1, 2]_def").unwrap().to_string(), "[1, 2]_def");
         let tenth = value("0.1").unwrap().interval();
         assert_eq!((tenth.lo(), tenth.hi()), (0.1f64.next_down(), 0.1));
         assert_eq!(value("pi").unwrap().interval(), Interval::PI);
@@ -640,7 +640,7 @@ mod tests {
     fn equations_have_zeros() {
         let mut workspace = Workspace::default();
         workspace.define(&Snippet::whole("line 1", "fn g(u) = u^2 - 2"), &Bindings::new()).unwrap();
-        for (text, expected) in [("x^2 = 2", "[-2, 2] com"), ("g", "[-2, 2] com"), ("(g(x) = 0)", "[-2, 2] com")] {
+        for (text, expected) in [("x^2 = 2", "[-2, 2]_com"), ("g", "[-2, 2]_com"), ("(g(x) = 0)", "[-2, 2]_com")] {
             let expression = workspace.expression(&Snippet::whole("line 2", text), &["x"], Reading::Zero).unwrap();
             let boxes = expression.boxes(&bindings(&[("x", 0.0, 2.0)]));
             assert_eq!(expression.enclose(&boxes).to_string(), expected, "{text}");
