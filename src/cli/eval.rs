@@ -43,7 +43,7 @@ pub fn eval(arguments: &EvalArguments) -> Result<(), Failure> {
 }
 
 /// The values of all arguments `NAME=VALUE`; the messages about all of them.
-fn values(workspace: &Workspace, arguments: &[String]) -> Result<Bindings, Failure> {
+pub fn values(workspace: &Workspace, arguments: &[String]) -> Result<Bindings, Failure> {
     let mut given = Bindings::new();
     let mut failure = Failure::default();
     for argument in arguments {

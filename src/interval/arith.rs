@@ -23,10 +23,7 @@ impl Add for Interval {
             return self.add_beyond(b);
         }
         // Neither sum is -0.0, since no bound is, and a sum that is 0 has no error.
-        Self {
-            lo: if below < 0.0 { lo.next_down() } else { lo },
-            hi: if above > 0.0 { hi.next_up() } else { hi },
-        }
+        Self { lo: if below < 0.0 { lo.next_down() } else { lo }, hi: if above > 0.0 { hi.next_up() } else { hi } }
     }
 }
 
@@ -123,7 +120,7 @@ impl Interval {
         Self::ONE / self
     }
 
-    /// IEEE 1788 `sqr`: x^2; tighter than `x * x`, whose factors are taken as independent.
+    /// x^2; tighter than `x * x`, whose factors are taken as independent.
     pub fn sqr(self) -> Self {
         let (low, high) = if self.lo >= 0.0 {
             (self.lo, self.hi)
@@ -177,7 +174,7 @@ impl Interval {
         Self::raw(exact::hypot(self.mig(), y.mig()).0, exact::hypot(self.mag(), y.mag()).1)
     }
 
-    /// x y + z, rounded once.
+    /// IEEE 1788 `fma`: x y + z, rounded once.
     pub fn mul_add(self, y: Self, z: Self) -> Self {
         if self.is_empty() || y.is_empty() || z.is_empty() {
             return Self::EMPTY;

@@ -3,9 +3,9 @@
 use super::{Interval, exact, round};
 
 impl Interval {
-    /// IEEE 1788 `cancelMinus`: the tightest z with `other + z` around this set, for bounded sets of which `other` is not
-    /// the wider. Unlike `self - other`, which is wider than this set, it takes the width of `other` away. The whole
-    /// line where no such z exists or is bounded; empty for an empty set without anything to cancel from it.
+    /// IEEE 1788 `cancelMinus`: the tightest z with `other + z` around this set, for bounded sets of which `other` is
+    /// not the wider. Unlike `self - other`, which is wider than this set, it takes the width of `other` away. The
+    /// whole line where the sets are not of that kind; empty for an empty set, unless `other` is unbounded.
     pub fn cancel_minus(self, other: Self) -> Self {
         if self.is_empty() && (other.is_empty() || other.is_bounded()) {
             return Self::EMPTY;

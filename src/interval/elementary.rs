@@ -59,7 +59,7 @@ impl Interval {
         self.increasing(core_math::exp10m1, preimage).intersect(Self { lo: -1.0, hi: f64::INFINITY })
     }
 
-    /// The natural logarithm of the positive members.
+    /// IEEE 1788 `log`: the natural logarithm of the positive members.
     pub fn ln(self) -> Self {
         self.logarithm(0.0, core_math::log, |y| (y == 0.0).then_some(1.0))
     }
@@ -76,7 +76,7 @@ impl Interval {
         self.logarithm(0.0, core_math::log10, preimage)
     }
 
-    /// ln(1 + x) of the members greater than -1.
+    /// IEEE 1788 `logp1`: ln(1 + x) of the members greater than -1.
     pub fn log1p(self) -> Self {
         self.logarithm(-1.0, core_math::log1p, zero_at_zero)
     }
@@ -91,8 +91,7 @@ impl Interval {
     /// IEEE 1788 `log10p1`: the decimal logarithm of 1 + x of the members greater than -1.
     pub fn log10p1(self) -> Self {
         // 10^k - 1 as in `exp10m1`.
-        let preimage =
-            |y: f64| (y.fract() == 0.0 && (0.0..=15.0).contains(&y)).then(|| core_math::exp10(y) - 1.0);
+        let preimage = |y: f64| (y.fract() == 0.0 && (0.0..=15.0).contains(&y)).then(|| core_math::exp10(y) - 1.0);
         self.logarithm(-1.0, core_math::log10p1, preimage)
     }
 

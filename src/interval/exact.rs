@@ -177,13 +177,7 @@ const POWER_BITS: u64 = 1 << 13;
 /// Bounds (down, up) of `x^(p/q)` for finite `x > 0`, if `x^p` and the `q`-th power of the result are small enough to
 /// be written out. `guess` is near the result and not negative; `quick` compares a positive number with the result
 /// where that is easy.
-pub(super) fn power(
-    x: f64,
-    p: i32,
-    q: u32,
-    guess: f64,
-    quick: impl Fn(f64) -> Option<Ordering>,
-) -> Option<(f64, f64)> {
+pub(super) fn power(x: f64, p: i32, q: u32, guess: f64, quick: impl Fn(f64) -> Option<Ordering>) -> Option<(f64, f64)> {
     let x = Dyadic::new(x);
     let result_bits = 53;
     if x.significand.bits() * u64::from(p.unsigned_abs()) > POWER_BITS || result_bits * u64::from(q) > POWER_BITS {

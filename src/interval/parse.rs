@@ -101,7 +101,9 @@ enum Literal {
 /// One end of a literal.
 enum Bound {
     /// Minus or plus infinity.
-    Infinite { negative: bool },
+    Infinite {
+        negative: bool,
+    },
     Finite(BigRational),
 }
 

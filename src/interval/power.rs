@@ -6,7 +6,7 @@ use num_integer::Integer;
 use std::cmp::Ordering;
 
 impl Interval {
-    /// x^n, with x^0 = 1 everywhere and 0 outside the domain if n < 0.
+    /// IEEE 1788 `pown`: x^n, with x^0 = 1 everywhere and 0 outside the domain if n < 0.
     pub fn powi(self, n: i32) -> Self {
         self.pow_rational(n, 1)
     }

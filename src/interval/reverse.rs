@@ -90,16 +90,16 @@ impl Interval {
         between(x, first(x, 0.5, branches(self)), first(-x, 0.5, branches(-self)))
     }
 
-    /// IEEE 1788 `mulRev`: the members x of `x` with b x in `c` for some b in this set. With [`Interval::ENTIRE`] for `x`
-    /// it is the standard's binary form.
+    /// IEEE 1788 `mulRev`: the members x of `x` with b x in `c` for some b in this set. With [`Interval::ENTIRE`] for
+    /// `x` it is the standard's binary form.
     pub fn mul_rev(self, c: Self, x: Self) -> Self {
         let [low, high] = self.mul_rev_to_pair(c);
         low.intersect(x).hull(high.intersect(x))
     }
 
-    /// IEEE 1788 `mulRevToPair`, two-output division: all x with b x in `c` for some b in this set, as two sets of which
-    /// the second is empty unless this set reaches to both sides of 0 and `c` is away from it; then the first is the
-    /// lower one.
+    /// IEEE 1788 `mulRevToPair`, two-output division: all x with b x in `c` for some b in this set, as two sets. The
+    /// second is empty unless this set reaches to both sides of 0 and `c` is away from it; then the first is the lower
+    /// one.
     pub fn mul_rev_to_pair(self, c: Self) -> [Self; 2] {
         let b = self;
         if b.contains(0.0) && c.contains(0.0) {
@@ -137,11 +137,8 @@ impl Interval {
         quadrants(c).fold(Self::EMPTY, |hull, quadrant| {
             let x = if quadrant.left { -self } else { self }.intersect(Self::NONNEGATIVE);
             // y = x tan; on the axis x = 0, where the angle is a right one, any y of that side.
-            let size = if quadrant.slope.hi.is_infinite() && x.contains(0.0) {
-                Self::NONNEGATIVE
-            } else {
-                x * quadrant.slope
-            };
+            let size =
+                if quadrant.slope.hi.is_infinite() && x.contains(0.0) { Self::NONNEGATIVE } else { x * quadrant.slope };
             hull.hull(if quadrant.lower { -size } else { size }.intersect(y))
         })
     }

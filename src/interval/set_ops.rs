@@ -61,7 +61,7 @@ impl Interval {
         if self.contains(0.0) { 0.0 } else { self.lo.abs().min(self.hi.abs()) }
     }
 
-    /// Whether `x` is a member; infinities and NaN never are.
+    /// IEEE 1788 `isMember`: whether `x` is a member; infinities and NaN never are.
     pub fn contains(self, x: f64) -> bool {
         self.lo <= x && x <= self.hi && x.is_finite()
     }
@@ -83,7 +83,7 @@ impl Interval {
         !(self.lo <= other.hi && other.lo <= self.hi)
     }
 
-    /// The common members.
+    /// IEEE 1788 `intersection`: the common members.
     pub fn intersect(self, other: Self) -> Self {
         if self.disjoint(other) {
             return Self::EMPTY;
@@ -91,7 +91,7 @@ impl Interval {
         Self::raw(self.lo.max(other.lo), self.hi.min(other.hi))
     }
 
-    /// The least interval that holds both sets.
+    /// IEEE 1788 `convexHull`: the least interval that holds both sets.
     pub fn hull(self, other: Self) -> Self {
         if self.is_empty() {
             return other;

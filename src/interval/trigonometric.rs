@@ -54,8 +54,8 @@ fn quadrant((sin, cos): (f64, f64)) -> u32 {
     }
 }
 
-/// Bounds of sine or cosine between its extremes, from the rounded values at both ends: `peak` and `trough` tell whether
-/// the extremes are taken.
+/// Bounds of sine or cosine between its extremes, from the rounded values at both ends: `peak` and `trough` tell
+/// whether the extremes are taken.
 fn wave(x: Interval, [a, b]: [f64; 2], peak: bool, trough: bool) -> Interval {
     // The values at 0 are exact, and no others (Lindemann).
     let (a_exact, b_exact) = (x.lo == 0.0, x.hi == 0.0);
@@ -98,10 +98,9 @@ impl Interval {
         if self.has_tangent_pole() {
             return Self::ENTIRE;
         }
-        // Increasing between poles.
-        let bound =
-            |x: f64| if x == 0.0 { (0.0, 0.0) } else { (core_math::tan(x).next_down(), core_math::tan(x).next_up()) };
-        Self::raw(bound(self.lo).0, bound(self.hi).1)
+        // Increasing between poles, and exact where it is 0: at 0 alone.
+        let (lo, hi) = (core_math::tan(self.lo), core_math::tan(self.hi));
+        Self::raw(if lo == 0.0 { lo } else { lo.next_down() }, if hi == 0.0 { hi } else { hi.next_up() })
     }
 
     /// Whether an odd multiple of pi/2 may be a member: exact but for intervals that are about as long as a turn or

@@ -10,8 +10,9 @@ use maud::html;
 use crate::accuracy::picture::LEGEND;
 use crate::accuracy::report::Report;
 use crate::accuracy::report::failed;
-use crate::accuracy::report::number::brief;
+use crate::accuracy::number::brief;
 use crate::accuracy::report::scene::kind;
+use crate::accuracy::report::table::Cell;
 use crate::accuracy::report::table::Shown;
 use crate::accuracy::report::table::Table;
 use crate::accuracy::scene::Measured;
@@ -72,8 +73,8 @@ pub fn of_scene(cost: &SceneCost) -> Result<String, Diagnostic> {
                 div.pair { (image(&reference.color, "the reference")) }
             }
         }
-        h3 { "Pareto front" }
-        (cards(cost.levels.iter().filter(|row| row.measured().is_some_and(|m| m.pareto))))
+        h3 { "Pareto fronts" }
+        (cards(cost.levels.iter().filter(|row| row.measured().is_some_and(|m| m.pareto || m.pareto_finders))))
         @for name in cost.kinds() {
             details {
                 summary { (name) }
@@ -123,8 +124,8 @@ pub fn charts(report: &impl Report) -> Result<Markup, Diagnostic> {
         h2 { "Time against error" }
         p {
             "Towards the left is closer, towards the bottom is faster. Of two points the one further to the left and below is the "
-            "better level; the ringed ones, joined by the grey line, are beaten by none: the Pareto front. Their labels begin with "
-            "the row's number in the table. Hollow points are rounded to nearest and prove nothing."
+            "better level; the ringed ones, joined by a line, are beaten by none: a Pareto front. Their labels begin with the row's "
+            "number in the table. Hollow points are rounded to nearest and prove nothing."
         }
         @for svg in figures { figure.chart { (PreEscaped(svg)) } }
     })
@@ -133,13 +134,7 @@ pub fn charts(report: &impl Report) -> Result<Markup, Diagnostic> {
 /// A table that can be sorted, with the meaning of its columns.
 pub fn table(table: &Table) -> Markup {
     let shown = table.shown(Shown::Page);
-    let text = |c: usize| {
-        table.lines.iter().any(|line| {
-            line.failure.is_none()
-                && line.cells[c].key().is_none()
-                && line.cells[c] != crate::accuracy::report::table::Cell::Missing
-        })
-    };
+    let text = |c: usize| table.lines.iter().any(|line| matches!(line.cells[c], Cell::Text(_)));
     html! {
         h2 { "All levels" }
         p { "A click on a heading sorts by it, a second click turns the order round. "

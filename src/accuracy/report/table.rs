@@ -1,6 +1,6 @@
 //! Tables: columns with their meaning, rows of cells; as text for a terminal and as CSV. The page shows the same.
 
-use crate::accuracy::report::number::brief;
+use crate::accuracy::number::brief;
 use crate::interval::decimal;
 
 /// Where a column is shown. CSV has all of them.

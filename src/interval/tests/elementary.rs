@@ -10,13 +10,13 @@ const P: usize = 256;
 const RM: RoundingMode = RoundingMode::ToEven;
 
 /// The real value at a point of the domain.
-type Oracle = fn(&BigFloat, &mut Consts) -> Option<BigFloat>;
+pub(super) type Oracle = fn(&BigFloat, &mut Consts) -> Option<BigFloat>;
 
-struct Unary {
-    name: &'static str,
+pub(super) struct Unary {
+    pub name: &'static str,
     plain: fn(Interval) -> Interval,
     decorated: fn(Decorated) -> Decorated,
-    oracle: Oracle,
+    pub oracle: Oracle,
     /// How many neighbours away from the value a bound of a point may be.
     slack: u32,
 }
@@ -25,7 +25,7 @@ fn compare(value: &BigFloat, x: f64) -> Ordering {
     value.cmp(&big(x)).expect("a value is a number").cmp(&0)
 }
 
-fn contains(y: Interval, value: &BigFloat) -> bool {
+pub(super) fn contains(y: Interval, value: &BigFloat) -> bool {
     !y.is_empty() && compare(value, y.lo()).is_ge() && compare(value, y.hi()).is_le()
 }
 
@@ -109,7 +109,7 @@ macro_rules! table {
     };
 }
 
-const TABLE: &[Unary] = table! {
+pub(super) const TABLE: &[Unary] = table! {
     exp(x, cc) 1 Some(x.exp(P, RM, cc));
     exp2(x, cc) 1 Some(big(2.0).pow(x, P, RM, cc));
     exp10(x, cc) 1 Some(big(10.0).pow(x, P, RM, cc));

@@ -126,7 +126,8 @@ fn mistakes_are_located() {
         assert!(!error.message().is_empty() && error.to_string().contains(&position.to_string()), "{error}");
         assert!(text.parse::<Decorated>().is_err(), "{text}");
     }
-    for text in ["[1,2]_ill", "[1,2]_", "[1,2]_foo", "[1,2]_com2", "[1,2] _com", "[]_com", "[1,]_com", "[nai]_trv", "1??_com"]
+    for text in
+        ["[1,2]_ill", "[1,2]_", "[1,2]_foo", "[1,2]_com2", "[1,2] _com", "[]_com", "[1,]_com", "[nai]_trv", "1??_com"]
     {
         assert!(text.parse::<Decorated>().is_err(), "{text}");
     }

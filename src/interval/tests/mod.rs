@@ -5,6 +5,7 @@ mod arithmetic;
 mod conformance;
 mod decorations;
 mod elementary;
+mod linear;
 mod literals;
 mod modal;
 mod powers;
