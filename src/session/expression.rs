@@ -3,7 +3,9 @@
 
 use std::collections::BTreeMap;
 use std::collections::HashMap;
+use std::fs::File;
 use std::io;
+use std::io::Read;
 use std::path::Path;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -66,6 +68,8 @@ pub struct Workspace {
     sources: SourceMap,
     definitions: Module,
     files: CachedFiles,
+    /// What imported files define, as it is written there.
+    imported: Vec<(String, String)>,
 }
 
 impl Workspace {
@@ -94,7 +98,7 @@ impl Workspace {
     /// # Errors
     /// If the file or a definition in it cannot be read; then nothing has changed.
     pub fn load(&mut self, path: &Snippet, variables: &Bindings) -> Result<(), Messages> {
-        self.files.forget();
+        let before = self.files.replace(HashMap::new());
         let mut sources = self.sources.clone();
         let file = sources.add(path.name, path.text);
         let path_span = Span { file, start: path.part.start as u32, end: path.part.end as u32 };
@@ -105,7 +109,11 @@ impl Workspace {
             .retain(|statement| !matches!(&statement.kind, StatementKind::Import { path, .. } if *path == written));
         let kind = StatementKind::Import { path: written, path_span };
         definitions.statements.push(Statement { span: path_span, doc: Vec::new(), kind });
-        self.adopt(sources, file, definitions, variables, &[])
+        let adopted = self.adopt(sources, file, definitions, variables, &[]);
+        if adopted.is_err() {
+            self.files.replace(before);
+        }
+        adopted
     }
 
     /// Takes new definitions if an expression can be resolved among them.
@@ -126,6 +134,7 @@ impl Workspace {
             Ok(_) => {
                 self.sources = sources;
                 self.definitions = definitions;
+                self.imported = self.files.definitions();
                 Ok(())
             }
             Err(diagnostics) => Err(Messages { sources: probe, diagnostics }),
@@ -140,6 +149,11 @@ impl Workspace {
     /// The definitions as they were written, with the name that each defines; imports have none.
     pub fn definitions(&self) -> impl Iterator<Item = (Option<&str>, &str)> {
         self.definitions.statements.iter().map(|statement| (defined(statement), self.written(statement)))
+    }
+
+    /// The definitions of imported files, each with its name.
+    pub fn imported(&self) -> &[(String, String)] {
+        &self.imported
     }
 
     fn written(&self, statement: &Statement) -> &str {
@@ -226,13 +240,33 @@ impl Workspace {
     }
 }
 
+/// Definitions beyond this are refused: what is meant is another file, or a device that never ends.
+const MAX_BYTES: u64 = 1 << 26;
+
 /// Reads files once, so that a definition keeps its meaning until the file is loaded again.
 #[derive(Debug, Default)]
 struct CachedFiles(Mutex<HashMap<PathBuf, String>>);
 
 impl CachedFiles {
-    fn forget(&self) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    /// Takes other texts for what has been read; those that it had.
+    fn replace(&self, texts: HashMap<PathBuf, String>) -> HashMap<PathBuf, String> {
+        std::mem::replace(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner), texts)
+    }
+
+    /// What the files define, sorted by name.
+    fn definitions(&self) -> Vec<(String, String)> {
+        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut found = Vec::new();
+        for text in known.values() {
+            let (module, _) = syntax::parse(FileId(0), text);
+            for statement in &module.statements {
+                let span = statement.span.start as usize..statement.span.end as usize;
+                let written = text.get(span).unwrap_or_default();
+                found.extend(defined(statement).map(|name| (name.to_owned(), written.to_owned())));
+            }
+        }
+        found.sort();
+        found
     }
 }
 
@@ -242,7 +276,11 @@ impl Importer for CachedFiles {
         if let Some(text) = known.get(path) {
             return Ok(text.clone());
         }
-        let text = FileSystem.read(path)?;
+        let mut text = String::new();
+        File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
+        if text.len() as u64 > MAX_BYTES {
+            return Err(io::Error::other(format!("larger than {} MiB", MAX_BYTES >> 20)));
+        }
         known.insert(path.to_owned(), text.clone());
         Ok(text)
     }
