@@ -22,7 +22,7 @@ pub fn compare(state: &mut State, expression: &Snippet) -> Result<String, Messag
         let value = choice.enclose(&formula, &boxes).value;
         let operations = choice.operations(&formula).to_string();
         let (interval, decoration) = (value.interval(), value.decoration());
-        [choice.to_string(), interval.to_string(), width(interval), operations, decoration.to_string()]
+        [choice.to_string(), interval.to_string(), short(interval.width()), operations, decoration.to_string()]
     };
     let choices = Extension::ALL.iter().map(|extension| Choice::One(*extension)).chain([Choice::Auto]);
     let rows: Vec<[String; 5]> = choices.map(row).collect();

@@ -14,6 +14,7 @@ use crate::diagnostic::code;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
+use crate::interval::decimal;
 use crate::repl::chart;
 use crate::repl::state::Prepared;
 use crate::repl::state::State;
@@ -205,8 +206,8 @@ fn cell(plot: &Plot, buffer: &Buffer, column: usize, row: u16) -> String {
 /// A number with a few digits.
 pub fn short(x: f64) -> String {
     let size = x.abs();
-    if x == 0.0 {
-        return "0".to_owned();
+    if x == 0.0 || !x.is_finite() {
+        return decimal(x);
     }
     if !(1e-3..1e5).contains(&size) {
         return format!("{x:.2e}");

@@ -6,9 +6,9 @@ use crate::interval::Interval;
 use crate::repl::newton::Root;
 use crate::repl::newton::Roots;
 use crate::repl::newton::Search;
+use crate::repl::plot::short;
 use crate::repl::state::State;
 use crate::repl::state::trim;
-use crate::session::answer::width;
 use crate::session::expression::Messages;
 use crate::session::expression::Reading;
 use crate::session::expression::Snippet;
@@ -79,7 +79,7 @@ fn report(roots: &Roots, range: Interval) -> String {
         lines.push(format!("{other} in {range}: proved"));
     } else {
         lines.push("unknown, perhaps a root that is touched, a pole or a jump:".to_owned());
-        lines.extend(shown(&roots.unknown, |x| format!("  {x}  width {}", width(*x))));
+        lines.extend(shown(&roots.unknown, |x| format!("  {x}  width {}", short(x.width()))));
         lines.push(format!("{other} in the rest of {range}: proved"));
     }
     if roots.exhausted {
@@ -92,7 +92,7 @@ fn one(root: &Root) -> String {
     let bracket = root.bracket;
     let place = match bracket.is_singleton() {
         true => format!("  {bracket}  exact"),
-        false => format!("  {bracket}  width {}", width(bracket)),
+        false => format!("  {bracket}  width {}", short(bracket.width())),
     };
     match root.alone {
         Some(alone) => format!("{place}, the only one in {alone}"),
