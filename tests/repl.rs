@@ -125,6 +125,7 @@ fn roots_are_proved_or_unknown() {
     assert!(pole.contains("1 proved root:") && pole.contains("unknown") && pole.contains("2.35619449019234"), "{pole}");
     assert!(last(&["fn f(u) = u^3 - 2", ":root f in [0, 2]"]).contains("1.25992104989487"));
     assert!(last(&["a = 0.1", ":root a x = 1 in [0, 20]"]).contains("1 proved root"));
+    assert!(last(&["x = 1", ":root x^2 = 2 in [0, 2]"]).contains("1 proved root"));
     assert_eq!(last(&[":root x^2 + 1 in [-5, 5]"]), "no root in [-5, 5]: proved");
 }
 
@@ -159,6 +160,8 @@ fn pictures_show_curve_and_bands() {
     let picture = say(&mut state, ":plot x^3 - x");
     assert!(picture.contains('░') && picture.contains("└"), "{picture}");
     assert!(picture.chars().any(|c| ('\u{2801}'..='\u{28FF}').contains(&c)), "{picture}");
+    assert!(say(&mut state, "a = 0.1; b = 2").starts_with("a = ["));
+    assert!(say(&mut state, ":plot a x^b").contains('░'));
     let folder = tempfile::tempdir().unwrap();
     for (name, start) in [("a.svg", &b"<svg"[..]), ("a.png", &b"\x89PNG"[..])] {
         let path = folder.path().join(name);

@@ -1,6 +1,7 @@
 //! `:compare` and `:bisect`: what the arithmetics make of one expression, at once and in parts.
 
 use crate::derive::Extension;
+use crate::interval::Decorated;
 use crate::repl::plot::short;
 use crate::repl::state::Prepared;
 use crate::repl::state::State;
@@ -33,7 +34,9 @@ pub fn compare(state: &mut State, expression: &Snippet) -> Result<String, Messag
 pub fn bisect(state: &mut State, expression: &Snippet) -> Result<String, Messages> {
     let prepared = state.prepare(expression)?;
     let choice = state.choice;
-    let free = prepared.free().len() as i32;
+    // All that is not a single number is cut, also the enclosure of a decimal.
+    let wide = |value: &&Decorated| value.interval().is_bounded() && !value.interval().is_singleton();
+    let free = prepared.boxes.iter().filter(wide).count() as i32;
     let once = choice.operations(&prepared.formula) as f64;
     let mut rows: Vec<[String; 4]> = Vec::new();
     let mut before = f64::NAN;

@@ -1,13 +1,13 @@
 //! `:root`: the zeros of an expression as text.
 
 use crate::diagnostic::code;
-use crate::interval::Decorated;
 use crate::interval::Interval;
 use crate::repl::newton::Root;
 use crate::repl::newton::Roots;
 use crate::repl::newton::Search;
 use crate::repl::plot::short;
 use crate::repl::state::State;
+use crate::repl::state::is_number;
 use crate::repl::state::trim;
 use crate::session::expression::Messages;
 use crate::session::expression::Reading;
@@ -35,13 +35,18 @@ pub fn root(state: &mut State, arguments: &Snippet) -> Result<String, Messages> 
     }
     let boxes = expression.boxes(&state.bindings);
     let names = expression.graph.variables();
-    // What has no number yet is what is searched for.
-    let free: Vec<usize> = (0..boxes.len()).filter(|&i| !is_number(boxes[i])).collect();
+    // What has no number yet is what is searched for, and a variable alone whatever it has.
+    let variables = expression.variables();
+    let searched = |i: &usize| match variables[..] {
+        [only] => names[*i] == only,
+        _ => !is_number(boxes[*i]),
+    };
+    let free: Vec<usize> = (0..boxes.len()).filter(searched).collect();
     let variable = match free[..] {
         [only] => only,
         [] => {
             let fault = snippet.fault(code::NO_VALUE, "nothing varies here", "every variable is a number");
-            let help = match names.first() {
+            let help = match variables.first() {
                 Some(name) => format!("`{name}` has a number; give it a box, such as `{name} = [0, 1]`"),
                 None => "write an expression in x".to_owned(),
             };
@@ -56,12 +61,6 @@ pub fn root(state: &mut State, arguments: &Snippet) -> Result<String, Messages> 
     };
     let roots = Search::new(&expression.graph, expression.root, &boxes, variable).run(range);
     Ok(report(&roots, range))
-}
-
-/// A number, or the enclosure of one that is no binary fraction.
-fn is_number(value: Decorated) -> bool {
-    let interval = value.interval();
-    interval.is_empty() || interval.is_singleton() || interval.lo().next_up() == interval.hi()
 }
 
 fn report(roots: &Roots, range: Interval) -> String {
