@@ -36,7 +36,10 @@ impl Drawn {
 /// What the reference proves of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Known {
-    Hit { bracket: [f64; 2], t: f64 },
+    Hit {
+        bracket: [f64; 2],
+        t: f64,
+    },
     Miss,
     /// Undecided; such pixels are left out of every comparison.
     Nothing,
@@ -116,7 +119,11 @@ impl Truth {
         let hits: Vec<bool> = pixels.iter().map(|known| matches!(known, Known::Hit { .. })).collect();
         let raster = Raster { width: width as usize, pixels: hits.len() };
         let silhouette = (0..hits.len())
-            .map(|index| raster.neighbourhood(index).any(|near| std::mem::discriminant(&pixels[near]) != std::mem::discriminant(&pixels[index])))
+            .map(|index| {
+                raster
+                    .neighbourhood(index)
+                    .any(|near| std::mem::discriminant(&pixels[near]) != std::mem::discriminant(&pixels[index]))
+            })
             .collect();
         let parts = raster.groups(&raster.thin(&hits));
         Self { width, pixels, speed, side, silhouette, parts }
@@ -146,9 +153,7 @@ impl Truth {
             let contradicted = match (known, hit) {
                 (Known::Nothing, _) => continue,
                 (Known::Miss, None) => false,
-                (Known::Hit { bracket, .. }, Some(hit)) => {
-                    hit.bracket[0] > bracket[1] || hit.bracket[1] < bracket[0]
-                }
+                (Known::Hit { bracket, .. }, Some(hit)) => hit.bracket[0] > bracket[1] || hit.bracket[1] < bracket[0],
                 (Known::Hit { .. }, None) | (Known::Miss, Some(_)) => true,
             };
             errors.compared += 1;

@@ -48,8 +48,7 @@ fn of_scene(path: &Path, arguments: &CostArguments) -> Result<(), Failure> {
         return Err(Diagnostic::error(code::BAD_OPTION, title).help(format!("write `--set {value}`")).into());
     }
     let (artefact, scene) = text::scene(path, &arguments.settings)?;
-    let request =
-        Request { size: arguments.size, repeats: arguments.repeat, selection: arguments.levels.into() };
+    let request = Request { size: arguments.size, repeats: arguments.repeat, selection: arguments.levels.into() };
     let name = path.display().to_string();
     let cost = watched(|progress| accuracy::of_scene(&name, &scene, request, session::backend(), progress))
         .map_err(|diagnostic| Failure::new(artefact.sources, vec![diagnostic]))?;

@@ -413,7 +413,10 @@ mod tests {
         assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
         assert!(axis.from < places[0] && places[3] < axis.to);
         assert!(axis.ticks.len() >= 4 && axis.ticks.len() <= 12, "{:?}", axis.ticks);
-        assert_eq!((axis.text(axis.place(0.0)), axis.text(-14.0), axis.text(2.0)), ("0".into(), "1e-14".into(), "100".into()));
+        assert_eq!(
+            (axis.text(axis.place(0.0)), axis.text(-14.0), axis.text(2.0)),
+            ("0".into(), "1e-14".into(), "100".into())
+        );
         // One number, or none, still makes an axis.
         assert!(Axis::new([5.0].into_iter()).ticks.len() >= 2);
         assert!(!Axis::new([].into_iter()).ticks.is_empty());
@@ -427,7 +430,13 @@ mod tests {
         };
         let points = vec![point(1e-3, 9.0, Some("1 left")), point(0.0, 20.0, None), point(0.1, 2.0, Some("2 <right>"))];
         let series = vec![Series { name: "imp".to_owned(), color: 0, marker: Marker::Circle, points }];
-        let chart = Chart { title: "T".to_owned(), x: "error".to_owned(), y: "ms".to_owned(), series, fronts: vec!["all".to_owned()] };
+        let chart = Chart {
+            title: "T".to_owned(),
+            x: "error".to_owned(),
+            y: "ms".to_owned(),
+            series,
+            fronts: vec!["all".to_owned()],
+        };
         let svg = chart.svg().unwrap();
         assert!(svg.contains("1 left") && svg.contains("2 &lt;right&gt;") && svg.ends_with("</svg>\n"));
         assert_eq!(svg.matches("<svg").count(), 1);

@@ -116,9 +116,13 @@ const FIELDS: &[Field<Row>] = &[
         |row| count(row, |m| m.unknown),
     ),
     field("compared", "compared", File, "pixels that the reference decides", |row| count(row, |m| m.errors.compared)),
-    field("wrong", "wrong", Terminal, "pixels drawn as a hit where the reference proves a miss, or the reverse", |row| {
-        count(row, |m| m.errors.wrong)
-    }),
+    field(
+        "wrong",
+        "wrong",
+        Terminal,
+        "pixels drawn as a hit where the reference proves a miss, or the reverse",
+        |row| count(row, |m| m.errors.wrong),
+    ),
     field("missed", "missed", Page, "of these: hits of the reference that are not drawn", |row| {
         count(row, |m| m.errors.missed)
     }),
@@ -210,7 +214,7 @@ impl Report for SceneCost {
                 x: "median bracket in the scene's units".to_owned(),
                 y: "milliseconds".to_owned(),
                 series: self.series(|m| m.errors.bracket_median, |m| m.pareto_bracket, |_| false),
-                fronts: vec!["all levels".to_owned()],
+                fronts: vec!["rounded outward".to_owned()],
             });
         } else {
             charts[0].x = "share of wrong pixels".to_owned();

@@ -29,6 +29,8 @@ pub enum Cell {
     Text(String),
     Count(u64),
     Number(f64),
+    /// A number of which every digit counts.
+    Exact(f64),
     /// Marked or not.
     Mark(bool),
     /// No such number, or none that means anything here.
@@ -48,6 +50,7 @@ impl Cell {
             Cell::Text(text) => text.clone(),
             Cell::Count(count) => count.to_string(),
             Cell::Number(number) => brief(*number),
+            Cell::Exact(number) => decimal(*number),
             Cell::Mark(marked) => if *marked { "*" } else { "" }.to_owned(),
             Cell::Missing => "-".to_owned(),
         }
@@ -58,7 +61,7 @@ impl Cell {
         match self {
             Cell::Text(text) => text.clone(),
             Cell::Count(count) => count.to_string(),
-            Cell::Number(number) => decimal(*number),
+            Cell::Number(number) | Cell::Exact(number) => decimal(*number),
             Cell::Mark(marked) => u8::from(*marked).to_string(),
             Cell::Missing => String::new(),
         }
@@ -69,7 +72,7 @@ impl Cell {
         match self {
             Cell::Text(_) | Cell::Missing => None,
             Cell::Count(count) => Some(*count as f64),
-            Cell::Number(number) => Some(*number),
+            Cell::Number(number) | Cell::Exact(number) => Some(*number),
             Cell::Mark(marked) => Some(f64::from(u8::from(*marked))),
         }
     }
@@ -127,7 +130,8 @@ impl Table {
             texts.push(shown.iter().map(|&c| line.cells[c].brief()).collect());
         }
         // A failure takes the place of all cells behind the last text.
-        let named = |line: &Line| shown.iter().rposition(|&c| matches!(line.cells[c], Cell::Text(_))).map_or(0, |c| c + 1);
+        let named =
+            |line: &Line| shown.iter().rposition(|&c| matches!(line.cells[c], Cell::Text(_))).map_or(0, |c| c + 1);
         let mut widths = vec![0; shown.len()];
         for (row, text) in texts.iter().enumerate() {
             let failed = row.checked_sub(1).map(|row| &self.lines[row]).filter(|line| line.failure.is_some());
