@@ -7,7 +7,7 @@ mod request;
 use crate::cli::arguments::EvalArguments;
 use crate::cli::failure::Failure;
 use crate::cli::files;
-use crate::derive::extension::Extension;
+use crate::derive::Extension;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::interval::Decorated;
@@ -70,7 +70,7 @@ fn value(workspace: &Workspace, argument: &str) -> Result<(String, Decorated), M
     let title = format!("value of {name}");
     let snippet = Snippet { name: &title, text: argument, part: equals + 1..argument.len() };
     let value = workspace.value(&snippet, &Bindings::new())?;
-    Ok((name.to_owned(), Decorated::new(value)))
+    Ok((name.to_owned(), value))
 }
 
 fn answer(expression: &Expression, given: &Bindings, choice: Choice) -> String {

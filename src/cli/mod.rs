@@ -2,8 +2,8 @@
 //! 1 the user's mistake, 2 ours, 130 interrupted.
 
 mod arguments;
-mod eval;
 mod cost;
+mod eval;
 mod failure;
 mod files;
 mod render;

@@ -1,7 +1,7 @@
 //! What an operation costs: operations on `f64` numbers, counted and not timed, so that the choice of an arithmetic is the
 //! same on every machine. Bounds rounded down and up count as two operations.
 
-use crate::derive::extension::Symbols;
+use crate::derive::Symbols;
 use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
@@ -28,7 +28,8 @@ pub fn steps(graph: &Graph, root: Value) -> u64 {
 /// Affine forms alone: each operation on forms of as many coefficients as they can have.
 pub fn affine(graph: &Graph, root: Value, symbols: Symbols) -> u64 {
     let needed = graph.reachable(&[root]);
-    let mut sets: Vec<Vec<bool>> = vec![Vec::new(); graph.len()];
+    // Which operations brought a symbol that a value's form can have, 64 to a word.
+    let mut sets: Vec<Vec<u64>> = vec![Vec::new(); graph.len()];
     let mut sum = 0;
     for (value, node) in graph.iter().filter(|(value, _)| needed[value.index()]) {
         let count = match symbols {
@@ -36,13 +37,13 @@ pub fn affine(graph: &Graph, root: Value, symbols: Symbols) -> u64 {
             Symbols::Two => 2,
             Symbols::Three => 3,
             Symbols::Full => {
-                // Every operation can bring a symbol of its own, be it for a rounding.
-                let mut set = vec![false; graph.len()];
+                let mut set = vec![0; value.index() / 64 + 1];
                 for operand in node.operands() {
                     set.iter_mut().zip(&sets[operand.index()]).for_each(|(own, theirs)| *own |= theirs);
                 }
-                let count = set.iter().filter(|&&has| has).count() as u64;
-                set[value.index()] = true;
+                let count = set.iter().map(|word| u64::from(word.count_ones())).sum();
+                // Every operation can bring a symbol of its own, be it for a rounding.
+                set[value.index() / 64] |= 1 << (value.index() % 64);
                 sets[value.index()] = set;
                 count
             }

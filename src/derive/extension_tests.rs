@@ -58,7 +58,10 @@ fn parts_converge_and_cover() {
             let excess = found.width() - 1.0;
             // Halved parts halve the excess of the natural extension and quarter that of all others.
             let order = if extension == Extension::Natural { 1.0 } else { 2.0 };
-            assert!(excess <= before * 4f64.powf(-order) * 1.01 + 1e-13, "{extension} in {parts}: {excess} after {before}");
+            assert!(
+                excess <= before * 4f64.powf(-order) * 1.01 + 1e-13,
+                "{extension} in {parts}: {excess} after {before}"
+            );
             before = excess;
         }
     }

@@ -153,8 +153,7 @@ impl Lowering<'_> {
 
     /// With affine arithmetic, the form with an error term alone.
     fn affine(&mut self, ends: Ends) -> Option<Af1> {
-        (self.spec.arithmetic == Arithmetic::Affine)
-            .then(|| affine::from_ends(&mut self.b, ends, None))
+        (self.spec.arithmetic == Arithmetic::Affine).then(|| affine::from_ends(&mut self.b, ends, None))
     }
 
     fn input(&mut self, name: &str) -> Form {
@@ -173,8 +172,7 @@ impl Lowering<'_> {
             false => Ends { nlo: self.b.min(ends.nlo, infinity), hi: self.b.min(ends.hi, infinity) },
         };
         let symbol = self.spec.symbols.iter().position(|n| n == name);
-        let affine = (self.spec.arithmetic == Arithmetic::Affine)
-            .then(|| affine::from_ends(&mut self.b, ends, symbol));
+        let affine = (self.spec.arithmetic == Arithmetic::Affine).then(|| affine::from_ends(&mut self.b, ends, symbol));
         Form { ends, empty: Mask::False, continuous: Mask::True, sign: Sign::Unknown, affine }
     }
 

@@ -11,7 +11,7 @@
 //! error of a result into a symbol that all further results share.
 
 use super::affine_terms::{Coefficients, Sparse};
-use super::{Interval, round};
+use super::{Interval, Linear, round};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// An affine form. Invariant: centre and coefficients are finite, `error >= 0`; an infinite error means unbounded, with
@@ -128,18 +128,10 @@ impl<C: Coefficients> Form<C> {
         Interval::raw(round::sub_down(self.centre, radius), round::add_up(self.centre, radius))
     }
 
-    /// The square. With u in [-R, R] the part that is not the centre, (c + u)^2 = c^2 + 2 c u + u^2, and u^2 lies in
-    /// [0, R^2]: half of that joins the centre, half the error.
-    pub fn sqr(&self) -> Self {
-        let mut error = Error(0.0);
-        let radius = self.radius();
-        let half = round::mul_up(0.5, round::mul_up(radius, radius));
-        let square = error.product(self.centre, self.centre);
-        let centre = error.sum(square, half);
-        error.add(half);
-        error.add(round::mul_up(2.0 * self.centre.abs(), self.error));
-        let coefficients = self.coefficients.map(|a| error.product(2.0 * self.centre, a));
-        Self::bounded(centre, coefficients, error)
+    /// The values of a function, given between two lines over an interval that holds this form's value.
+    pub fn apply(&self, function: &Linear) -> Self {
+        let offset = Self::constant(function.offset());
+        if function.slope() == 0.0 { offset } else { self.scale(Interval::point(function.slope())) + offset }
     }
 
     /// The product with a number of which `factor` is known; unbounded if that is empty or unbounded.

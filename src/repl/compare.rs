@@ -1,6 +1,6 @@
 //! `:compare` and `:bisect`: what the arithmetics make of one expression, at once and in parts.
 
-use crate::derive::extension::Extension;
+use crate::derive::Extension;
 use crate::interval::decimal;
 use crate::repl::state::Prepared;
 use crate::repl::state::State;
@@ -13,7 +13,7 @@ use crate::session::expression::Snippet;
 /// The finest cut of `:bisect`.
 const MOST_PARTS: u32 = 1024;
 /// Operations that one line of `:bisect` may cost.
-const MAX_OPERATIONS: f64 = 3e8;
+const MAX_OPERATIONS: f64 = 5e7;
 
 /// All arithmetics side by side.
 pub fn compare(state: &mut State, expression: &Snippet) -> Result<String, Messages> {

@@ -9,7 +9,7 @@ use ratatui::widgets::canvas::Canvas;
 use ratatui::widgets::canvas::Line;
 use ratatui::widgets::canvas::Points;
 
-use crate::derive::extension::Extension;
+use crate::derive::Extension;
 use crate::diagnostic::code;
 use crate::interval::Decorated;
 use crate::interval::Decoration;

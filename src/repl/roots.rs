@@ -27,7 +27,7 @@ pub fn root(state: &mut State, arguments: &Snippet) -> Result<String, Messages> 
         return Err(fault.help(format!("write `:root {} in [-10, 10]`", text.trim_end())));
     };
     let snippet = trim(&arguments.within(0..at));
-    let range = state.workspace.value(&trim(&arguments.within(at + 2..text.len())), &state.bindings)?;
+    let range = state.workspace.value(&trim(&arguments.within(at + 2..text.len())), &state.bindings)?.interval();
     let expression = state.open(&snippet, Reading::Zero)?;
     if expression.condition {
         let fault = snippet.fault(code::WRONG_KIND, "an inequality has no zeros", "a number or an equation is needed");

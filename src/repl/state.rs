@@ -1,6 +1,6 @@
 //! What a session knows, and what one line does to it: a line in, a text out, no terminal.
 
-use crate::derive::extension::Formula;
+use crate::derive::Formula;
 use crate::diagnostic::code;
 use crate::interval::Decorated;
 use crate::repl::commands;
@@ -126,8 +126,9 @@ impl State {
         let value = self.workspace.value(value, &self.bindings)?;
         let name = name.as_str();
         self.workspace.forget(name);
-        self.bindings.insert(name.to_owned(), Decorated::new(value));
-        Ok(format!("{name} = {value}"))
+        self.bindings.insert(name.to_owned(), value);
+        let natural = value == Decorated::new(value.interval());
+        Ok(if natural { format!("{name} = {}", value.interval()) } else { format!("{name} = {value}") })
     }
 
     /// Resolves an expression over the session's boxes.

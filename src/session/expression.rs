@@ -13,10 +13,10 @@ use std::sync::PoisonError;
 
 use crate::derive;
 use crate::derive::Arithmetic;
+use crate::derive::Formula;
 use crate::derive::Output;
 use crate::derive::Rounding;
 use crate::derive::Spec;
-use crate::derive::extension::Formula;
 use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
@@ -279,24 +279,36 @@ impl Workspace {
             || program::BUILTINS.iter().any(|builtin| builtin.name == name)
     }
 
-    /// A value or a box: an interval literal such as `[1, pi/2]` or `[entire]`, or an expression, whose enclosure is
-    /// taken.
+    /// A value or a box: an interval literal of IEEE 1788 such as `[1, 2]`, `[entire]` or `3.56?1`, one whose ends are
+    /// expressions, or an expression, whose enclosure is taken.
     ///
     /// # Errors
     /// If it cannot be read, is undefined, or its ends are not in order.
-    pub fn value(&self, snippet: &Snippet, variables: &Bindings) -> Result<Interval, Messages> {
+    pub fn value(&self, snippet: &Snippet, variables: &Bindings) -> Result<Decorated, Messages> {
         let written = snippet.as_str();
         let start = written.len() - written.trim_start().len();
         let snippet = &snippet.within(start..start + written.trim().len());
         let text = snippet.as_str();
-        let Some(inner) = text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) else {
-            return self.number(snippet, variables);
-        };
-        match inner.trim().to_ascii_lowercase().as_str() {
-            "" | "empty" => return Ok(Interval::EMPTY),
-            "entire" => return Ok(Interval::ENTIRE),
-            _ => {}
+        match text.parse::<Decorated>() {
+            Ok(value) => return Ok(value),
+            // Nothing but a literal can look like this, so its reader knows best what is wrong.
+            Err(error) if text.contains('?') || text.contains("]_") => {
+                let at = text.floor_char_boundary(error.position());
+                let fault = snippet.within(at..text.len()).fault(code::BAD_VALUE, error.message(), "from here");
+                return Err(fault.help("literals are such as `[1, 2]`, `[1, 2]_dac` or `3.56?1`"));
+            }
+            Err(_) => {}
         }
+        let interval = match text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
+            Some(inner) => self.interval(snippet, inner, variables)?,
+            None => self.number(snippet, variables)?,
+        };
+        Ok(Decorated::new(interval))
+    }
+
+    /// A box whose ends are expressions; `inner` is what stands between its brackets.
+    fn interval(&self, snippet: &Snippet, inner: &str, variables: &Bindings) -> Result<Interval, Messages> {
+        let text = snippet.as_str();
         let commas = top_level_commas(inner);
         let (left, right) = match commas[..] {
             [] => return self.number(&snippet.within(1..1 + inner.len()), variables),
@@ -572,9 +584,10 @@ mod tests {
             assert!(workspace.define(&Snippet::whole("line 2", wrong), &none).is_err(), "{wrong}");
         }
         let value = workspace.value(&Snippet::whole("line 3", "a"), &none).unwrap();
-        assert_eq!(value, Interval::point(2.0));
+        assert_eq!(value.interval(), Interval::point(2.0));
         workspace.define(&Snippet::whole("line 4", "let a = 3"), &none).unwrap();
-        assert_eq!(workspace.value(&Snippet::whole("line 5", "a"), &none).unwrap(), Interval::point(3.0));
+        let value = workspace.value(&Snippet::whole("line 5", "a"), &none).unwrap();
+        assert_eq!(value.interval(), Interval::point(3.0));
     }
 
     #[test]
@@ -589,16 +602,21 @@ mod tests {
             ("[,1]", f64::NEG_INFINITY, 1.0),
             ("[entire]", f64::NEG_INFINITY, f64::INFINITY),
             ("[min(1, 2), max(3, 4)]", 1.0, 4.0),
+            ("[1.5]", 1.5, 1.5),
+            ("3.5?5", 3.0, 4.0),
         ] {
-            assert_eq!(value(text).unwrap(), Interval::new(lo, hi).unwrap(), "{text}");
+            assert_eq!(value(text).unwrap().interval(), Interval::new(lo, hi).unwrap(), "{text}");
         }
-        assert!(value("[empty]").unwrap().is_empty());
-        let tenth = value("0.1").unwrap();
+        assert!(value("[empty]").unwrap().interval().is_empty());
+        assert_eq!(value("[1, 2]_def").unwrap().to_string(), "[1, 2] def");
+        let tenth = value("0.1").unwrap().interval();
         assert_eq!((tenth.lo(), tenth.hi()), (0.1f64.next_down(), 0.1));
-        assert_eq!(value("pi").unwrap(), Interval::PI);
+        assert_eq!(value("pi").unwrap().interval(), Interval::PI);
         assert!(said(value("[2, 1]")).contains("write `[1, 2]`"));
         assert!(said(value("[1, 1 +]")).contains("value of x:1:"));
-        for wrong in ["", "[1, 2, 3]", "1/0", "[sqrt(-1), 2]", "y", "[1, 2", "[inf, inf]", "[1; 2]"] {
+        for wrong in
+            ["", "[1, 2, 3]", "1/0", "[sqrt(-1), 2]", "y", "[1, 2", "[inf, inf]", "[1; 2]", "3?x", "[1, 2]_top"]
+        {
             assert!(value(wrong).is_err(), "{wrong}");
         }
     }

@@ -35,8 +35,7 @@ impl Polynomial {
         let bits = x.to_bits();
         let exponent = (bits >> 52 & 0x7ff) as i64;
         let fraction = bits & ((1 << 52) - 1);
-        let (mantissa, power) =
-            if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
+        let (mantissa, power) = if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
         let zeros = if mantissa == 0 { 0 } else { mantissa.trailing_zeros() };
         let (mantissa, power) = (BigInt::from(mantissa >> zeros), power + i64::from(zeros));
         let mantissa = if x < 0.0 { -mantissa } else { mantissa };

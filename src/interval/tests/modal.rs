@@ -162,7 +162,10 @@ fn elementary_functions_round_in_both_directions() {
         assert!(big(outer.lo()) < low && big(outer.hi()) > high, "{a} {b}");
         assert!(big(inner.lo()) > low && big(inner.hi()) < high, "{a} {b}");
         let back = outer.ln().unwrap();
-        assert!(modal(a, b).is_subset(back) && (back.lo() - a).abs() < 1e-7 && (back.hi() - b).abs() < 1e-7, "{back:?}");
+        assert!(
+            modal(a, b).is_subset(back) && (back.lo() - a).abs() < 1e-7 && (back.hi() - b).abs() < 1e-7,
+            "{back:?}"
+        );
     }
     assert_eq!((modal(1.0, -1.0).ln(), modal(1.0, 0.0).ln(), modal(4.0, -0.5).sqrt()), (None, None, None));
     assert_eq!(modal(9.0, 4.0).sqrt(), Some(modal(3.0, 2.0)));
