@@ -335,7 +335,7 @@ impl Axis {
         let (least, most) = if least <= most { (least, most) } else { (-1.0, 0.0) };
         let margin = 0.06 * (most - least).max(0.5);
         let has_zero = numbers.into_iter().any(|n| n == 0.0);
-        let zero = has_zero.then(|| least - 2.5 * margin);
+        let zero = has_zero.then_some(least - 2.5 * margin);
         let (from, to) = (zero.unwrap_or(least) - margin, most + margin);
         // 1, 2, 5 in each decade while there are few of them, else every so many decades.
         let decades = (most - least).max(0.5);
