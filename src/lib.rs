@@ -66,8 +66,9 @@
 //! | 3 | [`mod@derive`]: gradients, formulas along rays, interval and affine programs of lanes |
 //! | 4 | [`kernel`]: what consumers call: packets of boxes in, enclosures and verdicts out |
 //! | 5 | [`interpret`]: the reference kernel; [`codegen`]: the compiled ones; [`render`]: pictures and their proofs |
-//! | 6 | [`session`]: source to scene in one function, and the choice of the backend |
-//! | 7 | [`cli`]: the `imp` command |
+//! | 6 | [`session`]: source to scene in one function, and the choice of the backend; [`accuracy`]: what accuracy costs |
+//! | 7 | [`repl`]: calculating with boxes interactively |
+//! | 8 | [`cli`]: the `imp` command |
 //!
 //! # What holds everywhere
 //!
@@ -91,5 +92,6 @@ pub mod kernel;
 pub mod passes;
 pub mod program;
 pub mod render;
+pub mod repl;
 pub mod session;
 pub mod syntax;

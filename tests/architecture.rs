@@ -20,8 +20,8 @@ const LAYERS: &[(&str, u8)] = &[
     ("arrange", 5),
     ("session", 6),
     ("accuracy", 6),
-    ("cli", 7),
     ("repl", 7),
+    ("cli", 8),
 ];
 
 /// Past this a file is split.

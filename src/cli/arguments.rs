@@ -7,6 +7,7 @@ use clap::Parser;
 use clap::Subcommand;
 use clap::ValueEnum;
 
+use crate::accuracy::Selection;
 use crate::cli::values;
 use crate::derive::Arithmetic;
 use crate::derive::Precision;
@@ -63,6 +64,32 @@ pub enum Command {
     },
     /// Print a stage of the compilation.
     Emit(EmitArguments),
+    /// Enclose the values of an expression over a box.
+    Eval(EvalArguments),
+    /// Measure what accuracy costs: a scene at many levels of accuracy, or an expression in every arithmetic.
+    Cost(CostArguments),
+    /// Calculate with boxes interactively; `:help` there says how.
+    Repl,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct EvalArguments {
+    /// An expression such as 'x^2 - 1'; with --json a file of requests, `-` for stdin.
+    #[arg(value_name = "EXPR", allow_hyphen_values = true)]
+    pub expression: String,
+    /// A number such as x=0.1 (one tenth exactly) or a=pi/2, or a box such as x=[1,2].
+    #[arg(value_name = "NAME=VALUE", conflicts_with = "json")]
+    pub values: Vec<String>,
+    /// interval, affine, centred and others, `auto` for what they prove together, `all` for one line of each
+    /// [default: auto; with --json: interval].
+    #[arg(long, value_name = "NAME")]
+    pub arithmetic: Option<String>,
+    /// A file whose `let`, `fn` and `param` the expression may use.
+    #[arg(long, value_name = "FILE")]
+    pub definitions: Option<PathBuf>,
+    /// Answer requests, one JSON object a line: {"expr": "x^2 - 1", "vars": {"x": ["-1", "2"]}}.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What a picture is computed with; shared by all commands that compute one.
@@ -165,6 +192,69 @@ pub struct EmitArguments {
     /// What the kernel of the stages clif and asm computes on.
     #[arg(long, value_enum, default_value_t = KernelArgument::Interval)]
     pub arithmetic: KernelArgument,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct CostArguments {
+    /// A scene, or an expression such as 'x*(10-x)'. What exists or ends in .imp is a scene.
+    #[arg(value_name = "FILE|EXPR", allow_hyphen_values = true)]
+    pub subject: String,
+    /// What the variables of an expression are, such as x=[4,6].
+    #[arg(value_name = "NAME=VALUE")]
+    pub values: Vec<String>,
+    /// Write a page, charts, data or a table: the ending says which. Repeatable.
+    #[arg(short, long = "output", value_name = "OUT.html|svg|json|csv", value_parser = values::report)]
+    pub outputs: Vec<ReportArgument>,
+    /// Pixels across and down; one number for a square.
+    #[arg(long, value_name = "WxH", default_value = "192x192", value_parser = values::size)]
+    pub size: (u32, u32),
+    /// Measure each level N times and take the median time; slow levels are measured less often.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    pub repeat: u32,
+    /// How many levels of a scene are compared.
+    #[arg(long, value_enum, default_value_t = LevelsArgument::Usual)]
+    pub levels: LevelsArgument,
+    /// Worker threads [default: one per processor].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Value of a parameter of the scene or of the time `t`. Repeatable.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Override>,
+}
+
+/// A file for measurements and what goes into it.
+#[derive(Debug, Clone)]
+pub struct ReportArgument {
+    pub path: PathBuf,
+    pub format: ReportFormat,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReportFormat {
+    Html,
+    Svg,
+    Json,
+    Csv,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum LevelsArgument {
+    /// A few of each kind.
+    Few,
+    /// Every engine, arithmetic, format and rounding at several depths.
+    Usual,
+    /// Every combination at every depth, which takes minutes.
+    All,
+}
+
+impl From<LevelsArgument> for Selection {
+    fn from(levels: LevelsArgument) -> Self {
+        match levels {
+            LevelsArgument::Few => Selection::Few,
+            LevelsArgument::Usual => Selection::Usual,
+            LevelsArgument::All => Selection::All,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

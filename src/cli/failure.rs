@@ -7,6 +7,7 @@ use std::io::Write;
 use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::SourceMap;
+use crate::session::expression::Messages;
 
 /// Exit status for a mistake of the user's.
 const THEIRS: u8 = 1;
@@ -55,6 +56,12 @@ impl Failure {
 impl From<Diagnostic> for Failure {
     fn from(diagnostic: Diagnostic) -> Self {
         Self::new(SourceMap::default(), vec![diagnostic])
+    }
+}
+
+impl From<Messages> for Failure {
+    fn from(messages: Messages) -> Self {
+        Self::new(messages.sources, messages.diagnostics)
     }
 }
 

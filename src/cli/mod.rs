@@ -2,6 +2,8 @@
 //! 1 the user's mistake, 2 ours, 130 interrupted.
 
 mod arguments;
+mod cost;
+mod eval;
 mod failure;
 mod files;
 mod render;
@@ -19,6 +21,7 @@ use clap::Parser;
 use crate::cli::arguments::Arguments;
 use crate::cli::arguments::Command;
 use crate::cli::failure::Failure;
+use crate::repl;
 
 /// Runs the command that the process was given.
 pub fn main() -> ExitCode {
@@ -50,6 +53,9 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Check { files } => text::check(files),
         Command::Fmt { files, check } => text::format(files, *check),
         Command::Emit(arguments) => text::emit(arguments),
+        Command::Eval(arguments) => eval::eval(arguments),
+        Command::Repl => Ok(repl::run()?),
+        Command::Cost(arguments) => cost::cost(arguments),
     }
 }
 

@@ -1,8 +1,11 @@
 //! Values of arguments from their text. Messages complete clap's `invalid value '...' for '...': `.
 
 use std::ops::Range;
+use std::path::PathBuf;
 
 use crate::cli::arguments::LayerArgument;
+use crate::cli::arguments::ReportArgument;
+use crate::cli::arguments::ReportFormat;
 use crate::render::image::Layer;
 use crate::session::Given;
 use crate::session::Override;
@@ -64,6 +67,20 @@ pub fn layer(text: &str) -> Result<LayerArgument, String> {
     Ok(LayerArgument { layer, path: path.into() })
 }
 
+/// A file whose ending says what goes into it.
+pub fn report(text: &str) -> Result<ReportArgument, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let format = match ending.as_deref() {
+        Some("html") => ReportFormat::Html,
+        Some("svg") => ReportFormat::Svg,
+        Some("json") => ReportFormat::Json,
+        Some("csv") => ReportFormat::Csv,
+        _ => return Err("name a file that ends in .html, .svg, .json or .csv".to_owned()),
+    };
+    Ok(ReportArgument { path, format })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -74,6 +91,15 @@ mod tests {
         assert_eq!(size("96"), Ok((96, 96)));
         for wrong in ["", "x", "0x1", "1x0", "-1x5", "1x2x3", "99999x1", "a"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn reports_by_ending() {
+        assert_eq!(report("a/b.HTML").map(|report| report.format), Ok(ReportFormat::Html));
+        assert_eq!(report("b.csv").map(|report| report.format), Ok(ReportFormat::Csv));
+        for wrong in ["", "html", "a.png", "a.html.gz"] {
+            assert!(report(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -11,6 +11,7 @@ use crate::derive::Precision;
 use crate::derive::Spec;
 use crate::derive::affine;
 use crate::derive::affine::Af1;
+use crate::derive::affine::Operand;
 use crate::derive::elementary;
 use crate::derive::ends::Applied;
 use crate::derive::ends::Ends;
@@ -56,6 +57,7 @@ pub fn lower(spec: &Spec, bounds: &[Decorated], precision: Precision) -> LanePro
     let needed = spec.graph.reachable(&wanted);
     let mut lowering = Lowering {
         spec,
+        partial_sums: partial_sums(spec, &needed, &wanted),
         bounds,
         magnitudes: &magnitudes,
         b: Builder::new(precision),
@@ -74,8 +76,22 @@ pub fn lower(spec: &Spec, bounds: &[Decorated], precision: Precision) -> LanePro
     lowering.b.finish(2 * spec.inputs.len(), 2 * spec.uniforms.len(), outputs)
 }
 
+/// The sums that only sums use. Affine arithmetic leaves their ends those of the natural extension: the last sum's form
+/// knows all that theirs do.
+fn partial_sums(spec: &Spec, needed: &[bool], wanted: &[Value]) -> Vec<bool> {
+    let is_sum = |node: &Node| matches!(node.op, Op::Neg | Op::Add | Op::Sub);
+    let mut partial: Vec<bool> = spec.graph.iter().map(|(_, node)| is_sum(node)).collect();
+    for (_, node) in spec.graph.iter().filter(|(v, node)| needed[v.index()] && !is_sum(node)) {
+        node.operands().iter().for_each(|operand| partial[operand.index()] = false);
+    }
+    wanted.iter().for_each(|value| partial[value.index()] = false);
+    partial
+}
+
 struct Lowering<'s> {
     spec: &'s Spec,
+    /// See [`partial_sums`].
+    partial_sums: Vec<bool>,
     bounds: &'s [Decorated],
     /// For every value an upper bound of the computed ends' magnitude; infinite where overflow is not excluded.
     magnitudes: &'s [f64],
@@ -95,7 +111,7 @@ impl Lowering<'_> {
         let mut form = match node.op {
             Op::Var(id) => self.input(&self.spec.graph.variables()[id as usize].clone()),
             _ if self.is_constant(node) => self.constant(self.bounds[value.index()]),
-            _ => self.operation(node),
+            _ => self.operation(value, node),
         };
         for (_, range) in self.spec.domain.iter().filter(|(v, _)| *v == value) {
             form = self.clip(form, *range);
@@ -137,8 +153,7 @@ impl Lowering<'_> {
 
     /// With affine arithmetic, the form with an error term alone.
     fn affine(&mut self, ends: Ends) -> Option<Af1> {
-        (self.spec.arithmetic == Arithmetic::Affine)
-            .then(|| affine::from_ends(&mut self.b, ends, None, self.spec.symbols.len()))
+        (self.spec.arithmetic == Arithmetic::Affine).then(|| affine::from_ends(&mut self.b, ends, None))
     }
 
     fn input(&mut self, name: &str) -> Form {
@@ -157,8 +172,7 @@ impl Lowering<'_> {
             false => Ends { nlo: self.b.min(ends.nlo, infinity), hi: self.b.min(ends.hi, infinity) },
         };
         let symbol = self.spec.symbols.iter().position(|n| n == name);
-        let affine = (self.spec.arithmetic == Arithmetic::Affine)
-            .then(|| affine::from_ends(&mut self.b, ends, symbol, self.spec.symbols.len()));
+        let affine = (self.spec.arithmetic == Arithmetic::Affine).then(|| affine::from_ends(&mut self.b, ends, symbol));
         Form { ends, empty: Mask::False, continuous: Mask::True, sign: Sign::Unknown, affine }
     }
 
@@ -219,7 +233,7 @@ impl Lowering<'_> {
         }
     }
 
-    fn operation(&mut self, node: &Node) -> Form {
+    fn operation(&mut self, value: Value, node: &Node) -> Form {
         match node.op {
             Op::Select | Op::SelectJump | Op::Kink => return self.choice(node),
             Op::Entire => {
@@ -238,11 +252,21 @@ impl Lowering<'_> {
         }
         let mut form = Form { ends: applied.ends, empty, continuous, sign, affine: None };
         if self.spec.arithmetic == Arithmetic::Affine {
-            let forms: Vec<Af1> = operands.iter().filter_map(|operand| operand.affine).collect();
-            let (ends, af1) = affine::apply(&mut self.b, node.op, &forms, form.ends);
-            form.ends = ends;
-            form.affine = Some(af1);
-            // The intersection with an affine range may have lost the sign of a zero end only, never the sign.
+            let operands: Vec<Operand> = operands
+                .iter()
+                .filter_map(|operand| Some(Operand { form: operand.affine?, ends: operand.ends }))
+                .collect();
+            match affine::apply(&mut self.b, node.op, &operands, form.ends) {
+                Some(af1) => {
+                    if !self.partial_sums[value.index()] {
+                        // The intersection may lose the sign of a zero end, never the sign.
+                        let range = affine::to_ends(&mut self.b, &af1);
+                        form.ends = self.b.meet(range, form.ends);
+                    }
+                    form.affine = Some(af1);
+                }
+                None => form.affine = self.affine(form.ends),
+            }
         }
         form
     }

@@ -1,8 +1,12 @@
-//! Graph to graph and graph to lanes: gradients, points along rays, interval and affine versions, and the kernel's ABI.
+//! Graph to graph and graph to lanes: gradients, points along rays, interval and affine versions, the
+//! extensions of a formula to boxes, and the kernel's ABI.
 
 mod affine;
+mod choice;
+mod cost;
 mod elementary;
 mod ends;
+mod extension;
 mod gradient;
 mod interval;
 pub mod lanes;
@@ -17,6 +21,13 @@ use crate::graph::Value;
 use crate::interval::Interval;
 use crate::passes::bounds;
 
+pub use choice::Choice;
+pub use choice::Work;
+pub use choice::choose;
+pub use extension::Extension;
+pub use extension::Formula;
+pub use extension::Symbols;
+pub use extension::UnknownExtension;
 pub use gradient::derivative;
 pub use gradient::gradient;
 pub use gradient::power_ratio;

@@ -120,6 +120,12 @@ codes! {
     NOT_FORMATTED = "E0406";
     /// Formulas so large that compiling them takes a while.
     LARGE_FORMULA = "E0407";
+    /// A value that is neither a number nor a box.
+    BAD_VALUE = "E0421";
+    /// A line of `imp eval --json` that is no request.
+    BAD_REQUEST = "E0422";
+    /// A command of the REPL that does not exist or lacks something.
+    BAD_COMMAND = "E0423";
 
     /// A camera that sees nothing.
     BAD_CAMERA = "E0501";

@@ -1,6 +1,7 @@
 //! The graph: hash-consed SSA over exact real operations, its textual form, its verifier, and what one operation
 //! does to enclosures.
 
+mod affine;
 mod eval;
 mod op;
 mod text;
@@ -12,6 +13,7 @@ use std::fmt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
+pub use affine::apply_affine;
 pub use eval::{apply, enclose};
 pub use op::{AffineForm, Op, Totality};
 pub use text::{ParseError, parse};

@@ -1,12 +1,13 @@
 //! The one table of operations. Every other place that treats operations matches on [`Op`] without a wildcard, so a
 //! row added here makes the compiler list what else has to be written.
 
-/// How the compiled affine programs treat an operation.
+/// How affine forms pass through an operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AffineForm {
     /// Exact up to rounding: every noise symbol keeps its meaning.
     Exact,
-    /// A certified affine approximation with an error term (Chebyshev or min-range, or the AF1 product).
+    /// A certified affine approximation with an error term: between two lines, a product of forms, or composed of those.
+    /// Where the operation has no bounds, through the interval all the same.
     Approximated,
     /// Through the interval enclosure: the result has an error term alone.
     ThroughInterval,
@@ -77,12 +78,11 @@ macro_rules! op_table {
                 }
             }
 
-            /// How the compiled affine programs treat it.
+            /// How affine forms pass through it.
             pub const fn affine(self) -> AffineForm {
                 match self {
                     Op::Const(_) | Op::Var(_) => AffineForm::Exact,
-                    Op::PowInt(_) => AffineForm::Approximated,
-                    Op::PowRatio(..) => AffineForm::ThroughInterval,
+                    Op::PowInt(_) | Op::PowRatio(..) => AffineForm::Approximated,
                     $(Op::$variant => AffineForm::$affine,)*
                 }
             }
@@ -105,43 +105,43 @@ op_table! {
     Entire 0 "entire" ThroughInterval Jumps "All reals: the derivative across a possible jump.";
     Neg 1 "neg" Exact Continuous "-x";
     Sqr 1 "sqr" Approximated Continuous "x^2; tighter than x * x, whose factors are one value.";
-    Sqrt 1 "sqrt" ThroughInterval Partial "Square root on [0, inf).";
-    Cbrt 1 "cbrt" ThroughInterval Continuous "Cube root, odd.";
-    Abs 1 "abs" ThroughInterval Continuous "Absolute value.";
+    Sqrt 1 "sqrt" Approximated Partial "Square root on [0, inf).";
+    Cbrt 1 "cbrt" Approximated Continuous "Cube root, odd.";
+    Abs 1 "abs" Approximated Continuous "Absolute value.";
     Sign 1 "sign" ThroughInterval Jumps "-1, 0 or 1.";
     Floor 1 "floor" ThroughInterval Jumps "The largest integer not above x.";
     Ceil 1 "ceil" ThroughInterval Jumps "The smallest integer not below x.";
     Round 1 "round" ThroughInterval Jumps "The nearest integer, halves away from zero.";
-    Exp 1 "exp" ThroughInterval Continuous "e^x";
-    Exp2 1 "exp2" ThroughInterval Continuous "2^x";
-    Exp10 1 "exp10" ThroughInterval Continuous "10^x";
-    Expm1 1 "expm1" ThroughInterval Continuous "e^x - 1, accurate near 0.";
-    Ln 1 "ln" ThroughInterval Partial "Natural logarithm on (0, inf).";
-    Log1p 1 "log1p" ThroughInterval Partial "ln(1 + x), accurate near 0, on (-1, inf).";
-    Log2 1 "log2" ThroughInterval Partial "Logarithm to base 2 on (0, inf).";
-    Log10 1 "log10" ThroughInterval Partial "Logarithm to base 10 on (0, inf).";
-    Sin 1 "sin" ThroughInterval Continuous "Sine of an angle in radians.";
-    Cos 1 "cos" ThroughInterval Continuous "Cosine of an angle in radians.";
-    Tan 1 "tan" ThroughInterval Partial "Tangent of an angle in radians; poles at odd multiples of pi/2.";
-    Asin 1 "asin" ThroughInterval Partial "Inverse sine on [-1, 1].";
-    Acos 1 "acos" ThroughInterval Partial "Inverse cosine on [-1, 1].";
-    Atan 1 "atan" ThroughInterval Continuous "Inverse tangent.";
-    Sinh 1 "sinh" ThroughInterval Continuous "Hyperbolic sine.";
-    Cosh 1 "cosh" ThroughInterval Continuous "Hyperbolic cosine.";
-    Tanh 1 "tanh" ThroughInterval Continuous "Hyperbolic tangent.";
-    Asinh 1 "asinh" ThroughInterval Continuous "Inverse hyperbolic sine.";
-    Acosh 1 "acosh" ThroughInterval Partial "Inverse hyperbolic cosine on [1, inf).";
-    Atanh 1 "atanh" ThroughInterval Partial "Inverse hyperbolic tangent on (-1, 1).";
+    Exp 1 "exp" Approximated Continuous "e^x";
+    Exp2 1 "exp2" Approximated Continuous "2^x";
+    Exp10 1 "exp10" Approximated Continuous "10^x";
+    Expm1 1 "expm1" Approximated Continuous "e^x - 1, accurate near 0.";
+    Ln 1 "ln" Approximated Partial "Natural logarithm on (0, inf).";
+    Log1p 1 "log1p" Approximated Partial "ln(1 + x), accurate near 0, on (-1, inf).";
+    Log2 1 "log2" Approximated Partial "Logarithm to base 2 on (0, inf).";
+    Log10 1 "log10" Approximated Partial "Logarithm to base 10 on (0, inf).";
+    Sin 1 "sin" Approximated Continuous "Sine of an angle in radians.";
+    Cos 1 "cos" Approximated Continuous "Cosine of an angle in radians.";
+    Tan 1 "tan" Approximated Partial "Tangent of an angle in radians; poles at odd multiples of pi/2.";
+    Asin 1 "asin" Approximated Partial "Inverse sine on [-1, 1].";
+    Acos 1 "acos" Approximated Partial "Inverse cosine on [-1, 1].";
+    Atan 1 "atan" Approximated Continuous "Inverse tangent.";
+    Sinh 1 "sinh" Approximated Continuous "Hyperbolic sine.";
+    Cosh 1 "cosh" Approximated Continuous "Hyperbolic cosine.";
+    Tanh 1 "tanh" Approximated Continuous "Hyperbolic tangent.";
+    Asinh 1 "asinh" Approximated Continuous "Inverse hyperbolic sine.";
+    Acosh 1 "acosh" Approximated Partial "Inverse hyperbolic cosine on [1, inf).";
+    Atanh 1 "atanh" Approximated Partial "Inverse hyperbolic tangent on (-1, 1).";
     Add 2 "add" Exact Continuous "x + y";
     Sub 2 "sub" Exact Continuous "x - y";
     Mul 2 "mul" Approximated Continuous "x y";
-    Div 2 "div" ThroughInterval Partial "x / y for y other than 0.";
-    Min 2 "min" ThroughInterval Continuous "The smaller of two values.";
-    Max 2 "max" ThroughInterval Continuous "The larger of two values.";
+    Div 2 "div" Approximated Partial "x / y for y other than 0.";
+    Min 2 "min" Approximated Continuous "The smaller of two values.";
+    Max 2 "max" Approximated Continuous "The larger of two values.";
     Mod 2 "mod" ThroughInterval PartialJumps "x - y floor(x / y), with the sign of y; undefined for y = 0.";
-    Hypot 2 "hypot" ThroughInterval Continuous "sqrt(x^2 + y^2)";
-    Pow 2 "pow" ThroughInterval Partial "x^y on x > 0, and 0^y = 0 for y > 0.";
-    Atan2 2 "atan2" ThroughInterval PartialJumps "The angle of the point (second, first); undefined at the origin, jumps on the negative axis.";
+    Hypot 2 "hypot" Approximated Continuous "sqrt(x^2 + y^2)";
+    Pow 2 "pow" Approximated Partial "x^y on x > 0, and 0^y = 0 for y > 0.";
+    Atan2 2 "atan2" Approximated PartialJumps "The angle of the point (second, first); undefined at the origin, jumps on the negative axis.";
     Less 2 "less" ThroughInterval Jumps "1 where x < y, else 0.";
     LessEqual 2 "less_equal" ThroughInterval Jumps "1 where x <= y, else 0.";
     Equal 2 "equal" ThroughInterval Jumps "1 where x = y, else 0.";

@@ -2,14 +2,11 @@
 //! slow and written to be checked by eye; every compiled kernel must enclose what it encloses, and no kernel may prove
 //! more than it does.
 
-mod affine;
 mod point;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
-
-use affine::Form;
 
 use crate::derive::Arithmetic;
 use crate::derive::Output;
@@ -20,6 +17,8 @@ use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
 use crate::graph::apply;
+use crate::graph::apply_affine;
+use crate::interval::Affine;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
@@ -28,6 +27,11 @@ use crate::kernel::Kernel;
 use crate::kernel::Packet;
 use crate::kernel::Real;
 use crate::kernel::verdict;
+
+/// A form in the noise symbols of [`Spec::symbols`], of which a program has at most three.
+type Form = Affine<MAX_SYMBOLS>;
+
+const MAX_SYMBOLS: usize = 3;
 
 /// Makes reference kernels.
 ///
@@ -90,7 +94,7 @@ impl Program {
                 "a point program has values for outputs, all others have enclosures",
             ));
         }
-        if spec.symbols.len() > affine::MAX_SYMBOLS {
+        if spec.symbols.len() > MAX_SYMBOLS {
             return Err(Diagnostic::error(code::INTERNAL, "a program has at most three noise symbols"));
         }
         let mut roots: Vec<Value> = spec.outputs.iter().map(|output| output.value()).collect();
@@ -159,7 +163,7 @@ impl Program {
                     (forms[v.index()].unwrap_or_else(|| Form::constant(interval)), interval)
                 };
                 let operand_forms: Vec<(Form, Interval)> = node.operands().iter().map(form).collect();
-                let form = affine::apply(node.op, &operand_forms, result.interval());
+                let form = apply_affine(node.op, &operand_forms, result.interval());
                 forms[value.index()] = Some(form);
                 // Both hold wherever the operation is defined, so that what is left holds too.
                 result = Decorated::with(result.interval().intersect(form.to_interval()), result.decoration());

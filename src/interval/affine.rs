@@ -1,22 +1,33 @@
-//! Affine forms with a fixed number of noise symbols: AF1 of Messine, "Extensions of affine arithmetic: application to
-//! unconstrained global optimization" (2002).
+//! Affine forms: a value as an affine function of noise symbols, up to an error (Stolfi and de Figueiredo,
+//! "Self-validated numerical methods and applications", 1997).
 //!
-//! A form stands for c + a_1 e_1 + ... + a_N e_N + r d, with every e_i and d in [-1, 1]. The e_i are shared by all
+//! A form stands for c + a_1 e_1 + a_2 e_2 + ... + r d, with every e_i and d in [-1, 1]. The e_i are shared by all
 //! forms, so that what two of them have in common cancels; d is private to a form, and takes up all that is not
 //! affine and every rounding. A coefficient is rounded down, and by how much rounding it up would differ is added to
 //! r.
+//!
+//! With a fixed number of symbols these are the forms AF1 of Messine, "Extensions of affine arithmetic: application to
+//! unconstrained global optimization" (2002). A full form has as many as it needs: [`Form::claim`] turns the private
+//! error of a result into a symbol that all further results share.
 
-use super::{Interval, round};
+use super::affine_terms::{Coefficients, Sparse};
+use super::{Interval, Linear, round};
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// An affine form in `N` shared symbols. Invariant: centre and coefficients are finite, `error >= 0`; an infinite error
-/// means unbounded, with all else 0.
+/// An affine form. Invariant: centre and coefficients are finite, `error >= 0`; an infinite error means unbounded, with
+/// all else 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Affine<const N: usize> {
+pub struct Form<C> {
     centre: f64,
-    coefficients: [f64; N],
+    coefficients: C,
     error: f64,
 }
+
+/// A form in `N` shared symbols: AF1.
+pub type Affine<const N: usize> = Form<[f64; N]>;
+
+/// A form in any number of symbols.
+pub type FullAffine = Form<Sparse>;
 
 /// An error term that only grows, rounded up.
 struct Error(f64);
@@ -48,18 +59,15 @@ impl Error {
     }
 }
 
-impl<const N: usize> Affine<N> {
+impl<C: Coefficients> Form<C> {
     /// The form that says nothing: every real number.
-    pub const UNBOUNDED: Self = Self { centre: 0.0, coefficients: [0.0; N], error: f64::INFINITY };
+    pub const UNBOUNDED: Self = Self { centre: 0.0, coefficients: C::NONE, error: f64::INFINITY };
 
-    /// The members of `x` as a function of the symbol `symbol`, counted from 0; as [`Affine::constant`] if there is
+    /// The members of `x` as a function of the symbol `symbol`, counted from 0; as [`Form::constant`] if there is
     /// no such symbol.
     pub fn from_interval(x: Interval, symbol: usize) -> Self {
         let mut form = Self::constant(x);
-        if form.is_bounded()
-            && let Some(coefficient) = form.coefficients.get_mut(symbol)
-        {
-            *coefficient = form.error;
+        if form.is_bounded() && form.error > 0.0 && form.coefficients.set(symbol, form.error) {
             form.error = 0.0;
         }
         form
@@ -68,13 +76,22 @@ impl<const N: usize> Affine<N> {
     /// A number about which only `x` is known, sharing no symbol. Unbounded if `x` is empty or unbounded: an affine
     /// form has no way to be empty, and the caller keeps that apart.
     pub fn constant(x: Interval) -> Self {
-        if x.is_bounded() { Self::bounded(x.mid(), [0.0; N], Error(x.rad())) } else { Self::UNBOUNDED }
+        if x.is_bounded() { Self::bounded(x.mid(), C::NONE, Error(x.rad())) } else { Self::UNBOUNDED }
     }
 
     /// The form with these parts, or the unbounded one if a part has left the finite numbers.
-    fn bounded(centre: f64, coefficients: [f64; N], error: Error) -> Self {
-        let finite = centre.is_finite() && coefficients.iter().all(|a| a.is_finite()) && error.0.is_finite();
+    fn bounded(centre: f64, coefficients: C, error: Error) -> Self {
+        let finite = centre.is_finite() && coefficients.values().all(f64::is_finite) && error.0.is_finite();
         if finite { Self { centre, coefficients, error: error.0 } } else { Self::UNBOUNDED }
+    }
+
+    /// The same value with its error as a symbol of its own, of the index `symbol`, which no other form has taken. With
+    /// a fixed number of symbols nothing changes.
+    pub fn claim(mut self, symbol: usize) -> Self {
+        if self.is_bounded() && self.error > 0.0 && self.coefficients.claim(symbol, self.error) {
+            self.error = 0.0;
+        }
+        self
     }
 
     /// The value where every symbol is 0, up to the error.
@@ -83,7 +100,7 @@ impl<const N: usize> Affine<N> {
     }
 
     /// The coefficients of the shared symbols.
-    pub fn coefficients(&self) -> &[f64; N] {
+    pub fn coefficients(&self) -> &C {
         &self.coefficients
     }
 
@@ -99,7 +116,7 @@ impl<const N: usize> Affine<N> {
 
     /// How far from the centre a value can be, rounded up.
     pub fn radius(&self) -> f64 {
-        self.coefficients.iter().fold(self.error, |sum, a| round::add_up(sum, a.abs()))
+        self.coefficients.values().fold(self.error, |sum, a| round::add_up(sum, a.abs()))
     }
 
     /// The interval of all values.
@@ -111,18 +128,10 @@ impl<const N: usize> Affine<N> {
         Interval::raw(round::sub_down(self.centre, radius), round::add_up(self.centre, radius))
     }
 
-    /// The square. With u in [-R, R] the part that is not the centre, (c + u)^2 = c^2 + 2 c u + u^2, and u^2 lies in
-    /// [0, R^2]: half of that joins the centre, half the error.
-    pub fn sqr(&self) -> Self {
-        let mut error = Error(0.0);
-        let radius = self.radius();
-        let half = round::mul_up(0.5, round::mul_up(radius, radius));
-        let square = error.product(self.centre, self.centre);
-        let centre = error.sum(square, half);
-        error.add(half);
-        error.add(round::mul_up(2.0 * self.centre.abs(), self.error));
-        let coefficients = self.coefficients.map(|a| error.product(2.0 * self.centre, a));
-        Self::bounded(centre, coefficients, error)
+    /// The values of a function, given between two lines over an interval that holds this form's value.
+    pub fn apply(&self, function: &Linear) -> Self {
+        let offset = Self::constant(function.offset());
+        if function.slope() == 0.0 { offset } else { self.scale(Interval::point(function.slope())) + offset }
     }
 
     /// The product with a number of which `factor` is known; unbounded if that is empty or unbounded.
@@ -140,7 +149,7 @@ impl<const N: usize> Affine<N> {
     }
 }
 
-impl<const N: usize> Neg for Affine<N> {
+impl<C: Coefficients> Neg for Form<C> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -148,21 +157,18 @@ impl<const N: usize> Neg for Affine<N> {
     }
 }
 
-impl<const N: usize> Add for Affine<N> {
+impl<C: Coefficients> Add for Form<C> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
         let mut error = Error(round::add_up(self.error, other.error));
         let centre = error.sum(self.centre, other.centre);
-        let mut coefficients = self.coefficients;
-        for (a, b) in coefficients.iter_mut().zip(other.coefficients) {
-            *a = error.sum(*a, b);
-        }
+        let coefficients = self.coefficients.zip(&other.coefficients, |a, b| error.sum(a, b));
         Self::bounded(centre, coefficients, error)
     }
 }
 
-impl<const N: usize> Sub for Affine<N> {
+impl<C: Coefficients> Sub for Form<C> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -170,22 +176,25 @@ impl<const N: usize> Sub for Affine<N> {
     }
 }
 
-impl<const N: usize> Mul for Affine<N> {
+impl<C: Coefficients> Mul for Form<C> {
     type Output = Self;
 
-    /// (c + u)(d + v) = c d + c v + d u + u v, with |u v| at most the product of the radii.
+    /// (c + u)(d + v) = c d + c v + d u + u v.
     fn mul(self, other: Self) -> Self {
         if !self.is_bounded() || !other.is_bounded() {
             return Self::UNBOUNDED;
         }
-        let mut error = Error(round::mul_up(self.radius(), other.radius()));
+        let quadratic = C::quadratic(&self, &other);
+        if !quadratic.is_bounded() {
+            return Self::UNBOUNDED;
+        }
+        let mut error = Error(quadratic.rad());
         error.add(round::mul_up(self.centre.abs(), other.error));
         error.add(round::mul_up(other.centre.abs(), self.error));
-        let centre = error.product(self.centre, other.centre);
-        let mut coefficients = self.coefficients;
-        for (a, b) in coefficients.iter_mut().zip(other.coefficients) {
-            *a = error.products((*a, other.centre), (b, self.centre));
-        }
+        let product = error.product(self.centre, other.centre);
+        let centre = error.sum(product, quadratic.mid());
+        let coefficients =
+            self.coefficients.zip(&other.coefficients, |a, b| error.products((a, other.centre), (b, self.centre)));
         Self::bounded(centre, coefficients, error)
     }
 }

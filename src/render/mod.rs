@@ -60,6 +60,7 @@ pub(crate) use programs::less_half;
 pub(crate) use programs::simplify;
 pub use stats::Evaluations;
 pub use stats::Stats;
+pub use stats::median;
 pub use verify::Report;
 pub use verify::verify;
 
@@ -140,12 +141,32 @@ impl Renderer {
         }
     }
 
+    /// Time that the kernels took to compile, in milliseconds.
+    pub fn compile_ms(&self) -> f64 {
+        match &self.engine {
+            Engine::Space(space) => space.compile_ms,
+            Engine::Plane(plane) => plane.compile_ms,
+        }
+    }
+
     /// The exact line o + t d of a pixel, to which everything proved of it refers; `None` in a plane scene or outside the
     /// picture.
     pub fn ray(&self, x: u32, y: u32) -> Option<Ray> {
         match &self.engine {
             Engine::Space(space) => space.ray(x, y),
             Engine::Plane(_) => None,
+        }
+    }
+
+    /// The colours of hits that were found in whatever way, given for every pixel of the picture, row by row. Empty in a
+    /// plane scene, and if the options ask for no colour.
+    ///
+    /// # Panics
+    /// If a hit names a shape that the scene does not have: our mistake.
+    pub fn paint(&self, parameters: &[Parameter], hits: &[Option<Depth>]) -> Vec<[u8; 3]> {
+        match &self.engine {
+            Engine::Space(space) => space.paint(parameters, hits),
+            Engine::Plane(_) => Vec::new(),
         }
     }
 

@@ -19,7 +19,7 @@ pub enum Certainty {
     Unverified,
 }
 
-/// Where the hit of a pixel is.
+/// Where the hit of a pixel is. In a plane scene, whose pixels are boxes, all numbers but the shape's are 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Depth {
     /// The index of the shape that is drawn.

@@ -29,7 +29,9 @@ use crate::render::geometry::check;
 use crate::render::ink;
 use crate::render::march::GROUPS;
 use crate::render::options::Options;
+use crate::render::outcome::Surface;
 use crate::render::picture::Certainty;
+use crate::render::picture::Depth;
 use crate::render::picture::Picture;
 use crate::render::plan::Plan;
 use crate::render::plan::arithmetic;
@@ -115,7 +117,7 @@ pub struct Plane {
     options: Options,
     kernels: Vec<ShapeKernels>,
     pub plan: Plan,
-    compile_ms: f64,
+    pub compile_ms: f64,
 }
 
 impl Plane {
@@ -129,7 +131,7 @@ impl Plane {
         let mut plan = Plan::default();
         let mut kernels = Vec::new();
         for shape in &scene.shapes {
-            let (chosen, reason) = arithmetic(&scene.graph, shape.field, options.enclosures);
+            let (chosen, reason) = arithmetic(scene, shape, options.enclosures);
             plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
             let rounding = options.rounding;
             let orders = Orders { scene, shape, reach: None, rounding, arithmetic: chosen };
@@ -211,6 +213,9 @@ impl Plane {
         let drawn = |index: usize| places.iter().any(|places| places[index] != Place::Outside);
         stats.hits = (0..pixels).filter(|&index| drawn(index)).count() as u64;
         let mut picture = Picture { width, height, certainty, stats, ..Picture::default() };
+        if self.options.layers.depth {
+            picture.depth = (0..pixels).map(|index| nearest(&places, index)).collect();
+        }
         if self.options.layers.color {
             let gradients: Vec<Option<Program<f64>>> = self
                 .kernels
@@ -235,6 +240,12 @@ impl Plane {
             Rounding::Outward => Certainty::Miss,
         }
     }
+}
+
+/// The first shape that is drawn in a pixel.
+fn nearest(places: &[Vec<Place>], index: usize) -> Option<Depth> {
+    let shape = places.iter().position(|places| places[index] != Place::Outside)?;
+    Some(Depth { shape: shape as u16, surface: Surface::Field, bracket: [0.0; 2], t: 0.0, distance: 0.0 })
 }
 
 /// A square of pixels to be decided.

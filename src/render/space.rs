@@ -65,7 +65,7 @@ impl<T: Format> ShapeKernels<T> {
         options: &Options,
         (backend, plan): (&dyn Backend, &mut Plan),
     ) -> Result<Self, Diagnostic> {
-        let (beams, reason) = arithmetic(&scene.graph, shape.field, options.enclosures);
+        let (beams, reason) = arithmetic(scene, shape, options.enclosures);
         plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: options.rounding, arithmetic: beams };
@@ -139,7 +139,7 @@ pub struct Space {
     geometry: Geometry,
     kernels: Kernels,
     pub plan: Plan,
-    compile_ms: f64,
+    pub compile_ms: f64,
 }
 
 impl Space {
@@ -181,12 +181,41 @@ impl Space {
         }
     }
 
+    /// The colours of hits that were found in whatever way.
+    pub fn paint(&self, parameters: &[Parameter], hits: &[Option<Depth>]) -> Vec<[u8; 3]> {
+        match &self.kernels {
+            Kernels::Single(kernels) => self.with_job(kernels, parameters, |job| job.paint(hits)),
+            Kernels::Double(kernels) => self.with_job(kernels, parameters, |job| job.paint(hits)),
+        }
+    }
+
     fn render_with<T: Format>(
         &self,
         kernels: &[ShapeKernels<T>],
         parameters: &[Parameter],
         control: &Control<'_>,
     ) -> Result<Picture, Diagnostic> {
+        self.with_job(kernels, parameters, |job| {
+            let mut times = Vec::new();
+            let mut picture = Picture::default();
+            for _ in 0..self.options.repeat.max(1) {
+                let start = Instant::now();
+                picture = job.picture(control)?;
+                times.push(1e3 * start.elapsed().as_secs_f64());
+            }
+            picture.stats.compile_ms = self.compile_ms;
+            picture.stats.render_ms = median(times);
+            Ok(picture)
+        })
+    }
+
+    /// Binds the kernels to parameters, then works with them.
+    fn with_job<T: Format, R>(
+        &self,
+        kernels: &[ShapeKernels<T>],
+        parameters: &[Parameter],
+        work: impl FnOnce(&Job<T>) -> R,
+    ) -> R {
         let constants = shared_inputs(&self.geometry);
         let shapes = &self.scene.shapes;
         let tracers: Vec<Tracer<T>> = kernels.iter().map(|kernels| kernels.bind(parameters, &constants)).collect();
@@ -199,17 +228,7 @@ impl Space {
             })
             .collect();
         let shading = Shading::new(&self.scene.view, &self.geometry.camera, shapes.len());
-        let job = Job { space: self, parameters, tracers: &tracers, gradients: &gradients, shading: &shading };
-        let mut times = Vec::new();
-        let mut picture = Picture::default();
-        for _ in 0..self.options.repeat.max(1) {
-            let start = Instant::now();
-            picture = job.picture(control)?;
-            times.push(1e3 * start.elapsed().as_secs_f64());
-        }
-        picture.stats.compile_ms = self.compile_ms;
-        picture.stats.render_ms = median(times);
-        Ok(picture)
+        work(&Job { space: self, parameters, tracers: &tracers, gradients: &gradients, shading: &shading })
     }
 }
 
@@ -337,6 +356,32 @@ impl<T: Format> Job<'_, T> {
             }
             finished.evaluations.gradient += gradients.evaluations();
         }
+    }
+
+    fn paint(&self, hits: &[Option<Depth>]) -> Vec<[u8; 3]> {
+        let Space { scene, geometry, .. } = self.space;
+        let mut color = self.backdrop();
+        for &tile in &geometry.tiles {
+            let frame = Frame::new(&geometry.camera, tile);
+            let (width, height) = frame.size();
+            let place = |y: u32| ((tile.y + y) * geometry.camera.width + tile.x) as usize;
+            let mut spots: Vec<(usize, Spot)> = Vec::new();
+            for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+                let hit = hits.get(place(y) + x as usize).copied().flatten();
+                spots.extend(hit.map(|Depth { shape, surface, t, .. }| {
+                    let shape = usize::from(shape);
+                    let solid = scene.shapes[shape].kind == ShapeKind::Region;
+                    let spot = Spot { ray: frame.ray(x, y), t, shape, surface, solid };
+                    ((y * width + x) as usize, spot)
+                }));
+            }
+            let mut finished = Finished::default();
+            self.shade(&frame, &spots, &mut finished);
+            for y in 0..height {
+                copy_row(&mut color, place(y), &finished.color, y as usize, width as usize);
+            }
+        }
+        color
     }
 
     /// The colours of a picture in which nothing is drawn.

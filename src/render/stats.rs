@@ -23,6 +23,14 @@ pub struct Evaluations {
     pub gradient: u64,
 }
 
+impl Evaluations {
+    /// Evaluations of all kernels together.
+    pub fn total(&self) -> u64 {
+        let Self { beam, slope, root, ends, piece, face, gradient } = *self;
+        beam + slope + root + ends + piece + face + gradient
+    }
+}
+
 impl AddAssign for Evaluations {
     fn add_assign(&mut self, other: Self) {
         self.beam += other.beam;

@@ -1,8 +1,11 @@
 //! Source to scene in one function, [`compile`], which keeps every stage for `imp emit`; and [`backend()`], which makes
 //! kernels of the scene's formulas.
 
+pub mod answer;
 mod backend;
+pub mod expression;
 mod load;
+mod save;
 mod stages;
 
 use std::path::Path;
@@ -30,6 +33,10 @@ use crate::syntax::ast::Module;
 pub use crate::session::backend::backend;
 pub use crate::session::load::MAX_BYTES;
 pub use crate::session::load::bytes;
+pub use crate::session::save::cannot_write;
+pub use crate::session::save::check_folder;
+pub use crate::session::save::finish_writing;
+pub use crate::session::save::write;
 pub use crate::session::stages::Emission;
 pub use crate::session::stages::Stage;
 

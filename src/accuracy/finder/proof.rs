@@ -48,10 +48,8 @@ pub fn prove<T: Real>(
                 let [whole, start, end] = [0, 1, 2].map(|part| lanes.field(&batch, PARTS * place + part));
                 const HOLDS: u32 = verdict::POSITIVE | verdict::CONTINUOUS;
                 let crosses = if rules.region { start.sign() > 0 } else { start.sign() != 0 };
-                found[pixel].proved = whole.continuous
-                    && whole.condition & HOLDS == HOLDS
-                    && crosses
-                    && end.sign() == -start.sign();
+                found[pixel].proved =
+                    whole.continuous && whole.condition & HOLDS == HOLDS && crosses && end.sign() == -start.sign();
             }
         }
     }

@@ -211,7 +211,7 @@ impl Builder {
     }
 
     /// One of two numbers, by the precision.
-    fn by_precision(&mut self, single: f64, double: f64) -> Lane {
+    pub fn by_precision(&mut self, single: f64, double: f64) -> Lane {
         match self.precision() {
             Precision::Single => self.number(single),
             Precision::Double => self.number(double),
@@ -219,7 +219,7 @@ impl Builder {
     }
 
     /// `count` epsilon. Counts are multiples of 1/64.
-    fn epsilons(&mut self, count: f64) -> Lane {
+    pub fn epsilons(&mut self, count: f64) -> Lane {
         let epsilon = self.format().epsilon;
         self.number(count * epsilon)
     }
