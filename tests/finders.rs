@@ -215,7 +215,8 @@ fn nothing_is_proved_to_nearest() {
 
 #[test]
 fn the_nearest_of_several_shapes_counts() {
-    let scene = scene("surface far: x = 4\nsurface near: x = 2\nsurface none: x = 40\ndomain [0, 10] x [-1, 1] x [-1, 1]");
+    let scene =
+        scene("surface far: x = 4\nsurface near: x = 2\nsurface none: x = 40\ndomain [0, 10] x [-1, 1] x [-1, 1]");
     let ray = Ray { origin: [0.0; 3], direction: [1.0, 0.0, 0.0] };
     for finder in Finder::ALL {
         let found = sample(&scene, &|_, _| Some(ray), (1, 1), &settings(finder, 1e-3), session::backend()).unwrap();

@@ -77,12 +77,7 @@ pub struct Packet {
 
 impl Packet {
     /// The packet of some rays, up to four, with its first question; `None` if none of them meets the domain.
-    pub fn new(
-        rules: Rules,
-        rays: &[(usize, Ray)],
-        scene: &Scene,
-        epsilon: f64,
-    ) -> Option<(Self, Question<RAYS>)> {
+    pub fn new(rules: Rules, rays: &[(usize, Ray)], scene: &Scene, epsilon: f64) -> Option<(Self, Question<RAYS>)> {
         let axis = rays.first().map(|(_, ray)| dominant(ray))?;
         let mut members = Vec::with_capacity(RAYS);
         for &(pixel, ray) in rays {
