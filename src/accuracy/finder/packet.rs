@@ -187,8 +187,8 @@ impl Packet {
     }
 
     fn march(&mut self, answers: &[Answer; RAYS]) -> Option<Question<RAYS>> {
-        for i in 0..RAYS {
-            self.members[i].open = self.takes_part(&self.members[i]) && !self.rules.excludes(&answers[i]);
+        for (i, answer) in answers.iter().enumerate() {
+            self.members[i].open = self.takes_part(&self.members[i]) && !self.rules.excludes(answer);
         }
         if self.members.iter().all(|member| !member.open) {
             return self.pass();
@@ -199,11 +199,11 @@ impl Packet {
                 _ => self.descend(),
             };
         }
-        for i in 0..RAYS {
-            let [start, end] = self.span(&self.members[i]);
-            if self.members[i].open {
-                let inside = self.members[i].inside;
-                self.register(i, [start.max(inside[0]), end.min(inside[1])], &answers[i]);
+        for (i, answer) in answers.iter().enumerate() {
+            let member = &self.members[i];
+            if member.open {
+                let ([start, end], inside) = (self.span(member), member.inside);
+                self.register(i, [start.max(inside[0]), end.min(inside[1])], answer);
             }
         }
         self.pass()
