@@ -23,6 +23,7 @@ use imp::derive::Spec;
 use imp::derive::derivative;
 use imp::graph::Graph;
 use imp::graph::Op;
+use imp::graph::Totality;
 use imp::graph::Value;
 use imp::graph::enclose;
 use imp::interval::Decorated;
@@ -260,6 +261,53 @@ fn every_operation_contains_its_values() {
                 println!("{:24} {most:12.1} {mean:12.3}", format!("{op:?}"));
             }
         }
+    }
+}
+
+/// The width of f(a, b) less its tangent plane at a point, by the affine kernel, over a box of half the given size around
+/// the point.
+fn width_beside_tangent(op: Op, point: [f64; 2], radius: f64) -> f64 {
+    let (mut graph, root) = formula(op);
+    let at = |a: f64, b: f64| {
+        let inputs: Vec<Decorated> = [a, b, 0.0].map(|x| Decorated::new(Interval::point(x))).to_vec();
+        enclose(&formula(op).0, &[root], &inputs)[0].interval().mid()
+    };
+    let [a, b] = point;
+    let step = 1e-6;
+    let slopes = [
+        (at(a + step, b) - at(a - step, b)) / (2.0 * step),
+        if op.arity() > 1 { (at(a, b + step) - at(a, b - step)) / (2.0 * step) } else { 0.0 },
+    ];
+    let mut rest = root;
+    for (name, slope) in ["a", "b"].into_iter().zip(slopes) {
+        let slope = graph.constant(BigRational::from_float(slope).expect("a finite slope"));
+        let input = graph.var(name);
+        let term = graph.mul(slope, input);
+        rest = graph.sub(rest, term);
+    }
+    let kernel = Compiler.compile_f64(&spec(&graph, rest, Arithmetic::Affine)).expect("compiles");
+    let around = |x: f64| Interval::new(x - radius, x + radius).expect("a box");
+    let (lo, hi, _) = enclosures(&*kernel, &[vec![around(a), around(b), Interval::ZERO]])[0];
+    hi - lo
+}
+
+/// An operation with an affine form of its own shares its operands' noise symbols: less its tangent plane, a smooth
+/// function has an enclosure whose width shrinks with the square of the box. Through the interval it would shrink with
+/// the box alone, as it does for steps, atan2 and general powers.
+#[test]
+fn affine_forms_keep_what_operands_share() {
+    let points = |op: Op| match op {
+        Op::Acosh => [1.75, 0.0],
+        Op::Asin | Op::Acos | Op::Atanh => [-0.375, 0.0],
+        Op::Abs => [-0.75, 0.0],
+        Op::PowInt(_) => [1.25, 0.0],
+        _ => [0.75, 1.625],
+    };
+    let stepwise = |op: Op| matches!(op.totality(), Totality::Jumps | Totality::PartialJumps) || op == Op::PowInt(0);
+    for op in operations().into_iter().filter(|&op| !stepwise(op) && op != Op::Pow) {
+        let [wide, narrow] = [4, 8].map(|bits| width_beside_tangent(op, points(op), 0.5f64.powi(bits)));
+        // The square of 16 is 256; what is left after it is rounding.
+        assert!(narrow <= wide / 128.0 + 1e-8, "{op:?}: {wide:e} shrinks to {narrow:e} only");
     }
 }
 

@@ -17,11 +17,14 @@ pub enum Engine {
     Finder(Finder, Arithmetic),
 }
 
+/// The name of Imp's own engine.
+pub const OWN_ENGINE: &str = "imp";
+
 impl Engine {
     /// The engine's own name.
     pub fn name(self) -> &'static str {
         match self {
-            Engine::Imp(_) => "imp",
+            Engine::Imp(_) => OWN_ENGINE,
             Engine::Finder(finder, _) => finder.name(),
         }
     }

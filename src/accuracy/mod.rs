@@ -4,14 +4,22 @@
 //! [`of_scene`] and [`of_expression`] measure; their results are plain data, serialised once: the JSON of `imp cost` is
 //! the data, its tables, charts and pages (`report`) are views of it.
 
+mod expression;
 pub mod finder;
 mod level;
+mod number;
 mod pareto;
 mod picture;
+mod range;
 pub mod report;
 mod scene;
 mod truth;
 
+pub use expression::Enclosed;
+pub use expression::ExpressionCost;
+pub use expression::Method;
+pub use expression::Subject;
+pub use expression::of_expression;
 pub use level::Selection;
 pub use scene::Measured;
 pub use scene::Outcome;

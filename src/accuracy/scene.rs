@@ -9,6 +9,7 @@ use crate::accuracy::level::BASELINE;
 use crate::accuracy::level::Engine;
 use crate::accuracy::level::Goal;
 use crate::accuracy::level::Level;
+use crate::accuracy::level::OWN_ENGINE;
 use crate::accuracy::level::Selection;
 use crate::accuracy::level::precision_name;
 use crate::accuracy::level::rounding_name;
@@ -133,7 +134,9 @@ pub struct Measured {
     pub errors: Errors,
     /// On the Pareto front of error and time.
     pub pareto: bool,
-    /// On the Pareto front of the brackets' length and time.
+    /// The same among the root finders of the literature alone.
+    pub pareto_finders: bool,
+    /// On the Pareto front of the brackets' length and time among what is rounded outward.
     pub pareto_bracket: bool,
     #[serde(skip)]
     pub pictures: Pictures,
@@ -171,28 +174,76 @@ pub fn of_scene(
         2 => Level::of_plane(request.selection, request.size),
         _ => Level::of_space(request.selection),
     };
-    progress(0, levels.len() + 1, "reference");
+    let steps = levels.len() * request.repeats.max(1) as usize + 1;
+    progress(0, steps, "reference");
     let bench = Bench::new(scene, request, backend)?;
-    let mut outcomes: Vec<(Level, Outcome)> = Vec::new();
-    for (index, level) in levels.iter().enumerate() {
-        progress(index + 1, levels.len() + 1, &level.to_string());
-        let slow = outcomes.iter().rev().find_map(|(other, outcome)| match outcome {
-            Outcome::Measured(measured) if other.same_but_goal(level) => {
-                (measured.ms > PATIENCE).then(|| format!("left out: {other} took {:.1} s", 1e-3 * measured.ms))
-            }
-            _ => None,
-        });
-        let outcome = match slow {
-            Some(failure) => Outcome::Failed { failure },
-            None => match bench.measure(level) {
-                Ok(measured) => Outcome::Measured(Box::new(measured)),
-                Err(diagnostic) => Outcome::Failed { failure: diagnostic.title },
-            },
+    let mut trials: Vec<Trial<'_>> = Vec::new();
+    for (index, &level) in levels.iter().enumerate() {
+        progress(index + 1, steps, &level.to_string());
+        let state = match too_slow(&trials, &level) {
+            Some(reason) => Err(reason),
+            None => bench.first(&level).map_err(|diagnostic| diagnostic.title),
         };
-        outcomes.push((*level, outcome));
+        trials.push(Trial { level, state });
     }
-    progress(levels.len() + 1, levels.len() + 1, "");
+    // Round by round, so that what else the machine does in the meantime meets all levels alike.
+    for round in 1..request.repeats as usize {
+        for (index, trial) in trials.iter_mut().enumerate() {
+            progress(round * levels.len() + index + 1, steps, &trial.level.to_string());
+            trial.repeat();
+        }
+    }
+    progress(steps, steps, "");
+    let outcomes = trials.into_iter().map(Trial::outcome).collect();
     Ok(bench.finish(name, outcomes))
+}
+
+/// One level under way, or why it failed.
+struct Trial<'a> {
+    level: Level,
+    state: Result<Repeated<'a>, String>,
+}
+
+/// What the first run gave, and the times of all.
+struct Repeated<'a> {
+    runner: Runner<'a>,
+    measured: Box<Measured>,
+    times: Vec<f64>,
+}
+
+impl Trial<'_> {
+    fn repeat(&mut self) {
+        let Ok(Repeated { runner, times, .. }) = &mut self.state else { return };
+        if times.iter().sum::<f64>() > REPEATING {
+            return;
+        }
+        match runner.run() {
+            Ok(run) => times.push(run.ms),
+            Err(diagnostic) => self.state = Err(diagnostic.title),
+        }
+    }
+
+    fn outcome(self) -> (Level, Outcome) {
+        let outcome = match self.state {
+            Err(failure) => Outcome::Failed { failure },
+            Ok(Repeated { mut measured, times, .. }) => {
+                measured.repeats = times.len() as u32;
+                measured.ms_least = times.iter().copied().fold(f64::INFINITY, f64::min);
+                measured.ms_most = times.iter().copied().fold(0.0, f64::max);
+                measured.ms = median(times);
+                Outcome::Measured(measured)
+            }
+        };
+        (self.level, outcome)
+    }
+}
+
+/// Why a level is not worth waiting for: a coarser one of its kind took too long.
+fn too_slow(trials: &[Trial<'_>], level: &Level) -> Option<String> {
+    trials.iter().filter(|trial| trial.level.same_but_goal(level)).find_map(|trial| {
+        let ms = trial.state.as_ref().ok()?.times[0];
+        (ms > PATIENCE).then(|| format!("left out: {} took {:.1} s", trial.level, 1e-3 * ms))
+    })
 }
 
 /// What one run of a level gave.
@@ -242,15 +293,10 @@ impl<'a> Bench<'a> {
         Ok(Self { scene, request, backend, painter, truth, reference })
     }
 
-    /// A level with its times, its errors and its pictures; where it stands among the others is not known yet.
-    fn measure(&self, level: &Level) -> Result<Measured, Diagnostic> {
+    /// A level after its first run, with its errors and its pictures; where it stands among the others is not known yet.
+    fn first(&self, level: &Level) -> Result<Repeated<'_>, Diagnostic> {
         let runner = Runner::new(self, level)?;
         let Run { drawn, ms, evaluations } = runner.run()?;
-        let mut times = vec![ms];
-        while times.len() < self.request.repeats as usize && times.iter().sum::<f64>() < REPEATING {
-            times.push(runner.run()?.ms);
-        }
-        times.sort_by(f64::total_cmp);
         let cell = match level.goal {
             Goal::Depth(depth) => self.truth.side * (-f64::from(depth)).exp2(),
             Goal::Size(..) => self.truth.side,
@@ -263,11 +309,11 @@ impl<'a> Bench<'a> {
             drawn.hits.iter().zip(&drawn.proved).filter(|&(hit, &proved)| wanted(hit.is_some(), proved)).count() as u64
         };
         let marks = level.rounding == Rounding::Outward;
-        Ok(Measured {
-            ms: median(times.clone()),
-            ms_least: times[0],
-            ms_most: times[times.len() - 1],
-            repeats: times.len() as u32,
+        let measured = Measured {
+            ms,
+            ms_least: ms,
+            ms_most: ms,
+            repeats: 1,
             ratio: None,
             compile_ms: runner.compile_ms(),
             evaluations,
@@ -278,30 +324,39 @@ impl<'a> Bench<'a> {
             unknown: drawn.unknown.iter().filter(|&&unknown| unknown).count() as u64,
             errors,
             pareto: false,
+            pareto_finders: false,
             pareto_bracket: false,
             pictures: Pictures {
                 color: runner.color(&drawn)?,
                 errors: picture::png(self.truth.width, &picture::error_map(&self.truth, &drawn, marks)),
             },
-        })
+        };
+        Ok(Repeated { runner, measured: Box::new(measured), times: vec![ms] })
     }
 
     /// Ratios, fronts and the order of all levels, of which the first is the baseline.
-    fn finish(self, name: &str, outcomes: Vec<(Level, Outcome)>) -> SceneCost {
+    fn finish(&self, name: &str, outcomes: Vec<(Level, Outcome)>) -> SceneCost {
         let rows = outcomes.into_iter().map(|(level, outcome)| row(&level, self.request.size, outcome));
         let mut rows: Vec<Row> = rows.collect();
         let baseline = rows.first().map_or_else(String::new, |row| row.name.clone());
         let unit = rows.first().and_then(Row::measured).map(|measured| measured.ms);
-        let numbers = |wanted: &dyn Fn(&Measured) -> Option<f64>| -> Vec<(f64, f64)> {
-            let number = |row: &Row| row.measured().and_then(|m| Some((wanted(m)?, m.ms)));
-            rows.iter().map(|row| number(row).unwrap_or((f64::NAN, f64::NAN))).collect()
+        // Who has no number takes no part.
+        let front = |rows: &[Row], number: &dyn Fn(&Row, &Measured) -> Option<f64>| {
+            let point = |row: &Row| row.measured().and_then(|m| Some((number(row, m)?, m.ms)));
+            let points: Vec<(f64, f64)> = rows.iter().map(|row| point(row).unwrap_or((f64::NAN, f64::NAN))).collect();
+            pareto::front(&points)
         };
-        let by_error = pareto::front(&numbers(&|m| Some(m.errors.error)));
-        let by_bracket = pareto::front(&numbers(&|m| m.errors.bracket_median));
-        for ((row, pareto), pareto_bracket) in rows.iter_mut().zip(by_error).zip(by_bracket) {
+        let by_error = front(&rows, &|_, m| Some(m.errors.error));
+        let of_finders = front(&rows, &|row, m| (row.engine != OWN_ENGINE).then_some(m.errors.error));
+        // A bracket is a claim, which only rounding outward makes.
+        let outward = rounding_name(Rounding::Outward);
+        let by_bracket = front(&rows, &|row, m| m.errors.bracket_median.filter(|_| row.rounding == outward));
+        for (index, row) in rows.iter_mut().enumerate() {
             if let Outcome::Measured(measured) = &mut row.outcome {
                 measured.ratio = unit.map(|unit| measured.ms / unit);
-                (measured.pareto, measured.pareto_bracket) = (pareto, pareto_bracket);
+                measured.pareto = by_error[index];
+                measured.pareto_finders = of_finders[index];
+                measured.pareto_bracket = by_bracket[index];
             }
         }
         let key = |row: &Row| row.measured().map_or((f64::INFINITY, f64::INFINITY), |m| (m.errors.error, m.ms));
@@ -319,7 +374,7 @@ impl<'a> Bench<'a> {
             threads: rayon::current_num_threads(),
             repeats: self.request.repeats,
             baseline,
-            reference: self.reference,
+            reference: self.reference.clone(),
             levels: rows,
         }
     }

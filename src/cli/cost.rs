@@ -9,17 +9,22 @@ use indicatif::ProgressStyle;
 use crate::accuracy;
 use crate::accuracy::Progress;
 use crate::accuracy::Request;
+use crate::accuracy::Subject;
 use crate::accuracy::report;
 use crate::accuracy::report::Report;
 use crate::cli::arguments::CostArguments;
 use crate::cli::arguments::ReportArgument;
 use crate::cli::arguments::ReportFormat;
+use crate::cli::eval;
 use crate::cli::failure::Failure;
 use crate::cli::files;
 use crate::cli::text;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::session;
+use crate::session::expression::Reading;
+use crate::session::expression::Snippet;
+use crate::session::expression::Workspace;
 
 /// `imp cost FILE` or `imp cost EXPR NAME=VALUE...`.
 pub fn cost(arguments: &CostArguments) -> Result<(), Failure> {
@@ -51,8 +56,15 @@ fn of_scene(path: &Path, arguments: &CostArguments) -> Result<(), Failure> {
 }
 
 fn of_expression(arguments: &CostArguments) -> Result<(), Failure> {
-    let _ = arguments;
-    Ok(())
+    let workspace = Workspace::default();
+    let given = eval::values(&workspace, &arguments.values)?;
+    let names: Vec<&str> = given.keys().map(String::as_str).collect();
+    let expression = workspace.expression(&Snippet::whole("EXPR", &arguments.subject), &names, Reading::Value)?;
+    let inputs = expression.boxes(&given);
+    let (graph, root) = (&*expression.graph, expression.root);
+    let subject = Subject { text: &arguments.subject, graph, root, inputs: &inputs };
+    let cost = watched(|progress| accuracy::of_expression(subject, arguments.repeat, session::backend(), progress));
+    deliver(&cost, &arguments.outputs)
 }
 
 /// Measuring takes long enough to look first whether there is room for the results.

@@ -43,7 +43,7 @@ pub fn eval(arguments: &EvalArguments) -> Result<(), Failure> {
 }
 
 /// The values of all arguments `NAME=VALUE`; the messages about all of them.
-fn values(workspace: &Workspace, arguments: &[String]) -> Result<Bindings, Failure> {
+pub fn values(workspace: &Workspace, arguments: &[String]) -> Result<Bindings, Failure> {
     let mut given = Bindings::new();
     let mut failure = Failure::default();
     for argument in arguments {
@@ -70,7 +70,7 @@ fn value(workspace: &Workspace, argument: &str) -> Result<(String, Decorated), M
     let title = format!("value of {name}");
     let snippet = Snippet { name: &title, text: argument, part: equals + 1..argument.len() };
     let value = workspace.value(&snippet, &Bindings::new())?;
-    Ok((name.to_owned(), Decorated::new(value)))
+    Ok((name.to_owned(), value))
 }
 
 fn answer(expression: &Expression, given: &Bindings, choice: Choice) -> String {

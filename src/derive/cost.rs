@@ -1,7 +1,7 @@
 //! What an operation costs: operations on `f64` numbers, counted and not timed, so that the choice of an arithmetic is
 //! the same on every machine. Bounds rounded down and up count as two operations.
 
-use crate::derive::extension::Symbols;
+use crate::derive::Symbols;
 use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;

@@ -2,6 +2,7 @@
 //! extensions of a formula to boxes, and the kernel's ABI.
 
 mod affine;
+mod choice;
 mod cost;
 mod elementary;
 mod ends;
@@ -20,6 +21,9 @@ use crate::graph::Value;
 use crate::interval::Interval;
 use crate::passes::bounds;
 
+pub use choice::Choice;
+pub use choice::Work;
+pub use choice::choose;
 pub use extension::Extension;
 pub use extension::Formula;
 pub use extension::Symbols;

@@ -14,19 +14,26 @@ impl Neg for Interval {
 impl Add for Interval {
     type Output = Self;
 
+    #[inline]
     fn add(self, b: Self) -> Self {
-        if self.is_empty() || b.is_empty() {
-            return Self::EMPTY;
+        let (lo, hi) = (self.lo + b.lo, self.hi + b.hi);
+        let (below, above) = (round::sum_residual(self.lo, b.lo, lo), round::sum_residual(self.hi, b.hi, hi));
+        // NaN where a set is empty, or a bound or a sum infinite.
+        if !(below + above).is_finite() {
+            return self.add_beyond(b);
         }
-        Self::raw(round::add_down(self.lo, b.lo), round::add_up(self.hi, b.hi))
+        // Neither sum is -0.0, since no bound is, and a sum that is 0 has no error.
+        Self { lo: if below < 0.0 { lo.next_down() } else { lo }, hi: if above > 0.0 { hi.next_up() } else { hi } }
     }
 }
 
 impl Sub for Interval {
     type Output = Self;
 
+    #[inline]
     fn sub(self, b: Self) -> Self {
-        self + -b
+        // An empty set stays one here, with NaN bounds. Zeros are positive by the sum with +0.0.
+        self + Self { lo: 0.0 - b.hi, hi: 0.0 - b.lo }
     }
 }
 
@@ -38,25 +45,19 @@ impl Mul for Interval {
     /// | a \ b | b >= 0 | b <= 0 | 0 inside b |
     /// |---|---|---|---|
     /// | a >= 0 | al bl, ah bh | ah bl, al bh | ah bl, ah bh |
-    /// | a <= 0 | negate a, then negate the result | | |
-    /// | 0 inside a | exchange a and b | | min(al bh, ah bl), max(al bl, ah bh) |
+    /// | a <= 0 | al bh, ah bl | ah bh, al bl | al bh, al bl |
+    /// | 0 inside a | al bh, ah bh | ah bl, al bl | min(al bh, ah bl), max(al bl, ah bh) |
+    #[inline]
     fn mul(self, b: Self) -> Self {
-        let a = self;
+        let (a, down, up) = (self, round::mul_down, round::mul_up);
         if a.is_empty() || b.is_empty() {
             return Self::EMPTY;
         }
-        let (down, up) = (round::mul_down, round::mul_up);
-        if a.lo >= 0.0 {
-            let low = if b.lo >= 0.0 { a.lo } else { a.hi };
-            let high = if b.hi <= 0.0 { a.lo } else { a.hi };
-            Self::raw(down(low, b.lo), up(high, b.hi))
-        } else if a.hi <= 0.0 {
-            -(-a * b)
-        } else if b.lo >= 0.0 || b.hi <= 0.0 {
-            b * a
-        } else {
-            Self::raw(down(a.lo, b.hi).min(down(a.hi, b.lo)), up(a.lo, b.lo).max(up(a.hi, b.hi)))
+        if a.lo < 0.0 && a.hi > 0.0 && b.lo < 0.0 && b.hi > 0.0 {
+            return Self::raw(down(a.lo, b.hi).min(down(a.hi, b.lo)), up(a.lo, b.lo).max(up(a.hi, b.hi)));
         }
+        let ((a_least, b_least), (a_greatest, b_greatest)) = a.product_corners(b);
+        Self::raw(down(a_least, b_least), up(a_greatest, b_greatest))
     }
 }
 
@@ -94,6 +95,26 @@ impl Div for Interval {
 }
 
 impl Interval {
+    #[inline(never)]
+    fn add_beyond(self, b: Self) -> Self {
+        if self.is_empty() || b.is_empty() {
+            return Self::EMPTY;
+        }
+        Self::raw(round::add_down(self.lo, b.lo), round::add_up(self.hi, b.hi))
+    }
+
+    /// Where `a b` is least and where it is greatest, by the table of the product; not if 0 is inside both.
+    #[inline(always)]
+    fn product_corners(self, b: Self) -> ((f64, f64), (f64, f64)) {
+        let a = self;
+        let a_least = if b.lo >= 0.0 || a.hi <= 0.0 && b.hi > 0.0 { a.lo } else { a.hi };
+        let b_least = if a.lo >= 0.0 || b.hi <= 0.0 && a.hi > 0.0 { b.lo } else { b.hi };
+        // The same for a and -b.
+        let a_greatest = if b.hi <= 0.0 || a.hi <= 0.0 && b.lo < 0.0 { a.lo } else { a.hi };
+        let b_greatest = if a.lo >= 0.0 || b.lo >= 0.0 && a.hi > 0.0 { b.hi } else { b.lo };
+        ((a_least, b_least), (a_greatest, b_greatest))
+    }
+
     /// 1 / x for x != 0.
     pub fn recip(self) -> Self {
         Self::ONE / self
@@ -101,11 +122,16 @@ impl Interval {
 
     /// x^2; tighter than `x * x`, whose factors are taken as independent.
     pub fn sqr(self) -> Self {
-        if self.is_empty() {
+        let (low, high) = if self.lo >= 0.0 {
+            (self.lo, self.hi)
+        } else if self.hi <= 0.0 {
+            (-self.hi, -self.lo)
+        } else if self.is_empty() {
             return self;
-        }
-        let (mig, mag) = (self.mig(), self.mag());
-        Self::raw(round::mul_down(mig, mig), round::mul_up(mag, mag))
+        } else {
+            (0.0, self.hi.max(-self.lo))
+        };
+        Self::raw(if low == 0.0 { 0.0 } else { round::mul_down(low, low) }, round::mul_up(high, high))
     }
 
     /// |x|.
@@ -148,19 +174,19 @@ impl Interval {
         Self::raw(exact::hypot(self.mig(), y.mig()).0, exact::hypot(self.mag(), y.mag()).1)
     }
 
-    /// x y + z, rounded once.
+    /// IEEE 1788 `fma`: x y + z, rounded once.
     pub fn mul_add(self, y: Self, z: Self) -> Self {
         if self.is_empty() || y.is_empty() || z.is_empty() {
             return Self::EMPTY;
         }
-        let mut bounds = (f64::INFINITY, f64::NEG_INFINITY);
-        // Bilinear in (x, y) and increasing in z: the extremes are at corners.
-        for (a, b) in [(self.lo, y.lo), (self.lo, y.hi), (self.hi, y.lo), (self.hi, y.hi)] {
-            // An infinite bound of z settles that side, whatever the product.
-            let low = if z.lo.is_infinite() { z.lo } else { exact::mul_add(a, b, z.lo).0 };
-            let high = if z.hi.is_infinite() { z.hi } else { exact::mul_add(a, b, z.hi).1 };
-            bounds = (bounds.0.min(low), bounds.1.max(high));
+        let low = |(a, b): (f64, f64)| exact::mul_add(a, b, z.lo).0;
+        let high = |(a, b): (f64, f64)| exact::mul_add(a, b, z.hi).1;
+        if self.lo < 0.0 && self.hi > 0.0 && y.lo < 0.0 && y.hi > 0.0 {
+            let least = low((self.lo, y.hi)).min(low((self.hi, y.lo)));
+            return Self::raw(least, high((self.lo, y.lo)).max(high((self.hi, y.hi))));
         }
-        Self::raw(bounds.0, bounds.1)
+        // Increasing in the product: the corners are the same.
+        let (least, greatest) = self.product_corners(y);
+        Self::raw(low(least), high(greatest))
     }
 }

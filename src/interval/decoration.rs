@@ -44,23 +44,34 @@ pub struct Decorated {
     decoration: Decoration,
 }
 
-/// The interval, then its decoration: `[0, 1] com`.
+/// A literal of IEEE 1788 such as `[0, 1]_com`, or `[nai]`.
 impl fmt::Display for Decorated {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} {}", self.interval, self.decoration)
+        if self.is_nai() {
+            return f.pad("[nai]");
+        }
+        f.pad(&format!("{}_{}", self.interval, self.decoration))
     }
 }
 
 impl Decorated {
-    /// Not an interval; every operation on it is ill too.
+    /// IEEE 1788 `NaI`, not an interval; every operation on it is ill too. It has the empty set for its interval.
+    ///
+    /// It is equal to itself under `==`, which compares representations; the relations of the standard, such as
+    /// [`Decorated::same_set`], are all false for it.
     pub const ILL: Self = Self { interval: Interval::EMPTY, decoration: Decoration::Ill };
 
-    /// The identity function on `interval`: `Com` if bounded, `Dac` if unbounded, `Trv` if empty.
+    /// IEEE 1788 `empty`: the empty set, `trv`.
+    pub const EMPTY: Self = Self { interval: Interval::EMPTY, decoration: Decoration::Trv };
+    /// IEEE 1788 `entire`: all real numbers, `dac`.
+    pub const ENTIRE: Self = Self { interval: Interval::ENTIRE, decoration: Decoration::Dac };
+
+    /// IEEE 1788 `newDec`: the identity function on `interval`, `Com` if bounded, `Dac` if unbounded, `Trv` if empty.
     pub fn new(interval: Interval) -> Self {
         Self::with(interval, Decoration::Com)
     }
 
-    /// `interval` with the greatest decoration up to `decoration` that the invariant allows.
+    /// IEEE 1788 `setDec`: `interval` with the greatest decoration up to `decoration` that the invariant allows.
     pub fn with(interval: Interval, decoration: Decoration) -> Self {
         let most = if decoration == Decoration::Ill {
             return Self::ILL;
@@ -74,12 +85,12 @@ impl Decorated {
         Self { interval, decoration: decoration.min(most) }
     }
 
-    /// The enclosure.
+    /// IEEE 1788 `intervalPart`: the enclosure; the empty set of [`Decorated::ILL`].
     pub fn interval(self) -> Interval {
         self.interval
     }
 
-    /// What is known.
+    /// IEEE 1788 `decorationPart`: what is known.
     pub fn decoration(self) -> Decoration {
         self.decoration
     }
@@ -178,19 +189,25 @@ unary! {
     abs(x) Decoration::Com;
     sqrt(x) defined(x.lo() >= 0.0);
     cbrt(x) Decoration::Com;
+    rsqrt(x) defined(x.lo() > 0.0);
     sign(x) stepwise(x.sign().is_singleton(), x.contains(0.0));
     floor(x) stepwise(x.floor().is_singleton(), whole(x.lo()));
     ceil(x) stepwise(x.ceil().is_singleton(), whole(x.hi()));
     round(x) stepwise(x.round().is_singleton(), half(x.lo()) || half(x.hi()));
+    round_ties_even(x) stepwise(x.round_ties_even().is_singleton(), half(x.lo()) || half(x.hi()));
     trunc(x) stepwise(x.trunc().is_singleton(), x.lo() > 0.0 && whole(x.lo()) || x.hi() < 0.0 && whole(x.hi()));
     exp(x) Decoration::Com;
     exp2(x) Decoration::Com;
     exp10(x) Decoration::Com;
     expm1(x) Decoration::Com;
+    exp2m1(x) Decoration::Com;
+    exp10m1(x) Decoration::Com;
     ln(x) defined(x.lo() > 0.0);
     log2(x) defined(x.lo() > 0.0);
     log10(x) defined(x.lo() > 0.0);
     log1p(x) defined(x.lo() > -1.0);
+    log2p1(x) defined(x.lo() > -1.0);
+    log10p1(x) defined(x.lo() > -1.0);
     sin(x) Decoration::Com;
     cos(x) Decoration::Com;
     tan(x) defined(!x.has_tangent_pole());
@@ -236,6 +253,11 @@ impl Decorated {
         let inside = (p >= 0 || !x.contains(0.0)) && (!even_root || x.lo() >= 0.0);
         let local = if x.is_empty() || q == 0 { Decoration::Trv } else { defined(inside) };
         self.then(x.pow_rational(p, q), local)
+    }
+
+    /// [`Interval::rootn`], decorated.
+    pub fn rootn(self, n: i32) -> Self {
+        self.pow_rational(n.signum(), n.unsigned_abs())
     }
 
     /// [`Interval::clamp`], decorated.

@@ -41,7 +41,25 @@ impl Interval {
         self.increasing(core_math::expm1, zero_at_zero).intersect(Self { lo: -1.0, hi: f64::INFINITY })
     }
 
-    /// The natural logarithm of the positive members.
+    /// IEEE 1788 `exp2m1`: 2^x - 1.
+    pub fn exp2m1(self) -> Self {
+        // 2^k - 1 is a f64 for whole k from -53 to 53, and then adding 1 is exact too.
+        let preimage = |y: f64| {
+            let power = y + 1.0;
+            (power <= 9007199254740992.0 && power - 1.0 == y && power > 0.0 && is_power_of_two(power))
+                .then(|| core_math::log2(power))
+        };
+        self.increasing(core_math::exp2m1, preimage).intersect(Self { lo: -1.0, hi: f64::INFINITY })
+    }
+
+    /// IEEE 1788 `exp10m1`: 10^x - 1.
+    pub fn exp10m1(self) -> Self {
+        // 10^k - 1 is odd, and a f64 for 0 <= k <= 15: 10^15 < 2^53 < 10^16 - 1. Powers with k < 0 are not dyadic.
+        let preimage = |y: f64| decimal_exponent(y + 1.0).filter(|k| *k <= 15.0 && core_math::exp10(*k) - 1.0 == y);
+        self.increasing(core_math::exp10m1, preimage).intersect(Self { lo: -1.0, hi: f64::INFINITY })
+    }
+
+    /// IEEE 1788 `log`: the natural logarithm of the positive members.
     pub fn ln(self) -> Self {
         self.logarithm(0.0, core_math::log, |y| (y == 0.0).then_some(1.0))
     }
@@ -58,9 +76,23 @@ impl Interval {
         self.logarithm(0.0, core_math::log10, preimage)
     }
 
-    /// ln(1 + x) of the members greater than -1.
+    /// IEEE 1788 `logp1`: ln(1 + x) of the members greater than -1.
     pub fn log1p(self) -> Self {
         self.logarithm(-1.0, core_math::log1p, zero_at_zero)
+    }
+
+    /// IEEE 1788 `log2p1`: the binary logarithm of 1 + x of the members greater than -1.
+    pub fn log2p1(self) -> Self {
+        // 2^k - 1 as in `exp2m1`.
+        let preimage = |y: f64| (y.fract() == 0.0 && y.abs() <= 53.0).then(|| core_math::exp2(y) - 1.0);
+        self.logarithm(-1.0, core_math::log2p1, preimage)
+    }
+
+    /// IEEE 1788 `log10p1`: the decimal logarithm of 1 + x of the members greater than -1.
+    pub fn log10p1(self) -> Self {
+        // 10^k - 1 as in `exp10m1`.
+        let preimage = |y: f64| (y.fract() == 0.0 && (0.0..=15.0).contains(&y)).then(|| core_math::exp10(y) - 1.0);
+        self.logarithm(-1.0, core_math::log10p1, preimage)
     }
 
     /// An increasing function whose domain is the reals above `pole`, where it goes to -inf.

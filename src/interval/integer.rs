@@ -27,7 +27,12 @@ impl Interval {
         self.step(f64::ceil)
     }
 
-    /// The nearest whole number, halves away from zero, as `f64::round`.
+    /// IEEE 1788 `roundTiesToEven`: the nearest whole number, the even one of two.
+    pub fn round_ties_even(self) -> Self {
+        self.step(f64::round_ties_even)
+    }
+
+    /// IEEE 1788 `roundTiesToAway`: the nearest whole number, halves away from zero, as `f64::round`.
     pub fn round(self) -> Self {
         self.step(f64::round)
     }

@@ -2,13 +2,15 @@
 //!
 //! An [`Interval`] is a closed connected set of real numbers. An operation returns an enclosure of all values that the
 //! function takes on the part of the argument that lies in its domain. Bounds of arithmetic, of roots and of small
-//! rational powers are the tightest that `f64` has; those of elementary functions are at most two units in the last
-//! place away from the values, on each side.
+//! rational powers are the tightest that `f64` has; those of elementary functions are at most one unit in the last
+//! place wider than that on each side. `docs/conformance.md` lists every operation of the standard.
 //!
 //! - [`round`]: directed rounding;
 //! - [`Interval`] and its operations, in one file per group;
-//! - [`Verdict`]: answers to questions about sets;
+//! - [`Verdict`]: answers to questions about numbers of which only a set is known; [`Overlap`] and the relations of the
+//!   standard compare the sets themselves;
 //! - [`Decorated`]: an interval with what is known about the function on its way there;
+//! - both read from text, the literals of the standard, with a [`LiteralError`] for what is none;
 //! - [`Form`]: affine forms, with a bounded number of noise symbols ([`Affine`]) or any ([`FullAffine`]);
 //! - [`Linear`]: functions between two parallel lines, with which affine forms pass through them;
 //! - [`Modal`]: intervals with a quantifier, whose ends come in either order.
@@ -16,6 +18,8 @@
 mod affine;
 mod affine_terms;
 mod arith;
+mod cancel;
+mod decorated_sets;
 mod decoration;
 mod elementary;
 mod exact;
@@ -23,7 +27,10 @@ mod integer;
 mod linear;
 mod linear_functions;
 mod modal;
+mod parse;
 mod power;
+mod relations;
+mod reverse;
 pub mod round;
 mod set_ops;
 mod text;
@@ -38,6 +45,8 @@ pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
 pub use linear::Linear;
 pub use modal::Modal;
+pub use parse::LiteralError;
+pub use relations::Overlap;
 pub use text::decimal;
 pub use verdict::Verdict;
 
@@ -71,7 +80,8 @@ impl Interval {
     /// [0, inf].
     pub(super) const NONNEGATIVE: Self = Self { lo: 0.0, hi: f64::INFINITY };
 
-    /// The set of reals from `lo` to `hi`; `None` unless `lo <= hi`, `lo < +inf` and `hi > -inf`. Never swaps the ends.
+    /// IEEE 1788 `numsToInterval`: the set of reals from `lo` to `hi`; `None` unless `lo <= hi`, `lo < +inf` and
+    /// `hi > -inf`. Never swaps the ends.
     pub fn new(lo: f64, hi: f64) -> Option<Self> {
         // Adding +0.0 turns -0.0 into +0.0 and changes nothing else.
         (lo <= hi && lo < f64::INFINITY && hi > f64::NEG_INFINITY).then_some(Self { lo: lo + 0.0, hi: hi + 0.0 })
@@ -113,7 +123,7 @@ impl Interval {
         self.lo == f64::NEG_INFINITY && self.hi == f64::INFINITY
     }
 
-    /// Whether both bounds are finite; false for the empty set.
+    /// IEEE 1788 `isCommonInterval`: whether both bounds are finite; false for the empty set.
     pub fn is_bounded(self) -> bool {
         self.lo > f64::NEG_INFINITY && self.hi < f64::INFINITY
     }

@@ -3,9 +3,10 @@
 
 use super::{Interval, exact};
 use num_integer::Integer;
+use std::cmp::Ordering;
 
 impl Interval {
-    /// x^n, with x^0 = 1 everywhere and 0 outside the domain if n < 0.
+    /// IEEE 1788 `pown`: x^n, with x^0 = 1 everywhere and 0 outside the domain if n < 0.
     pub fn powi(self, n: i32) -> Self {
         self.pow_rational(n, 1)
     }
@@ -13,6 +14,16 @@ impl Interval {
     /// The real cube root.
     pub fn cbrt(self) -> Self {
         self.pow_rational(1, 3)
+    }
+
+    /// IEEE 1788 `rSqrt`: 1 / sqrt(x) for x > 0.
+    pub fn rsqrt(self) -> Self {
+        self.pow_rational(-1, 2)
+    }
+
+    /// IEEE 1788 `rootn`: the real n-th root, of members >= 0 for even n; its reciprocal for n < 0. Empty if n = 0.
+    pub fn rootn(self, n: i32) -> Self {
+        self.pow_rational(n.signum(), n.unsigned_abs())
     }
 
     /// x^(p/q) for q >= 1; the fraction need not be reduced. With p/q in lowest terms, an odd q takes the real root,
@@ -45,7 +56,7 @@ impl Interval {
     }
 
     /// x^(p/q) for a part of [0, inf] that is not empty, p != 0.
-    fn pow_nonnegative(self, p: i32, q: u32) -> Self {
+    pub(super) fn pow_nonnegative(self, p: i32, q: u32) -> Self {
         if self.is_empty() || p < 0 && self == Self::ZERO {
             return Self::EMPTY;
         }
@@ -88,25 +99,26 @@ fn power(x: f64, p: i32, q: u32) -> (f64, f64) {
         return bounds;
     }
     let (guess, steps) = estimate(x, p, q);
-    exact::power(x, p, q, guess).unwrap_or_else(|| {
+    exact::power(x, p, q, guess, |g| compare_powers(g, q, x, p)).unwrap_or_else(|| {
         let (down, up) = exact::widen(guess, steps);
         (down.max(0.0), up)
     })
 }
 
-/// Bounds of `x^p` for |p| <= 64, by multiplication in double-double arithmetic; `None` if the bits lost there could
-/// decide the rounding, or if a range is left.
+/// What double-double powers lose at most, relative to the power.
+const LOST: f64 = 1.0 / (1u128 << 97) as f64;
+
+/// x^n = h + l with |l| <= 2^-53 h, up to an error of [`LOST`], and whether it is exact, for x > 0 and 1 <= n <= 64;
+/// `None` if a range is left.
 ///
-/// With h + l the running product, |l| <= 2^-53 h, one step computes (h + l) x as RN(h x) + e + RN(l x) with
-/// e = h x - RN(h x) exact, and renormalises exactly by Fast2Sum. Two roundings are lost: that of l x, 2^-53 * 2^-53,
-/// and that of its sum with e, 2^-53 * 2^-52, relative to h x: less than 2^-104 a step, 63 * 2^-104 < 2^-98 in all.
-fn small_power(x: f64, p: i32) -> Option<(f64, f64)> {
-    const LOST: f64 = 1.0 / (1u128 << 97) as f64;
-    let n = p.unsigned_abs();
+/// With h + l the running product, one step computes (h + l) x as RN(h x) + e + RN(l x) with e = h x - RN(h x) exact,
+/// and renormalises exactly by Fast2Sum. Two roundings are lost: that of l x, 2^-53 * 2^-53, and that of its sum with
+/// e, 2^-53 * 2^-52, relative to h x: less than 2^-104 a step, 63 * 2^-104 < 2^-98 in all.
+fn doubled_power(x: f64, n: u32) -> Option<(f64, f64, bool)> {
     if n > 64 {
         return None;
     }
-    let (mut h, mut l, mut exact) = (x, 0.0, p > 0);
+    let (mut h, mut l, mut exact) = (x, 0.0, true);
     for _ in 1..n {
         let product = h * x;
         let tail = h.mul_add(x, -product) + l * x;
@@ -115,10 +127,31 @@ fn small_power(x: f64, p: i32) -> Option<(f64, f64)> {
         exact &= tail == 0.0;
     }
     // Every partial product lies between x and the last one: none has left the range where errors are exact.
-    if !(1e-280..1e280).contains(&h) || !(1e-280..1e280).contains(&x) {
-        return None;
-    }
-    if exact {
+    let in_range = (1e-280..1e280).contains(&h) && (1e-280..1e280).contains(&x);
+    in_range.then_some((h, l, exact))
+}
+
+/// How `g` > 0 compares with `x^(p/q)`, if double-double powers can tell.
+fn compare_powers(g: f64, q: u32, x: f64, p: i32) -> Option<Ordering> {
+    // Four times what both powers lose: the rest is for the roundings below, each by 2^-53 of numbers below 2^-51 of
+    // the powers, where those are close; where they are not, the sign cannot fail.
+    const MARGIN: f64 = 8.0 * LOST;
+    let ((gh, gl, _), (xh, xl, _)) = (doubled_power(g, q)?, doubled_power(x, p.unsigned_abs())?);
+    let (difference, size) = if p >= 0 {
+        ((gh - xh) + (gl - xl), gh + xh)
+    } else {
+        // g^q x^-p against 1.
+        let product = gh * xh;
+        ((product - 1.0) + (gh.mul_add(xh, -product) + (gh * xl + gl * xh)), 1.0 + product)
+    };
+    (difference.abs() > MARGIN * size).then(|| difference.total_cmp(&0.0))
+}
+
+/// Bounds of `x^p` for |p| <= 64, by multiplication in double-double arithmetic; `None` if the bits lost there could
+/// decide the rounding, or if a range is left.
+fn small_power(x: f64, p: i32) -> Option<(f64, f64)> {
+    let (mut h, mut l, exact) = doubled_power(x, p.unsigned_abs())?;
+    if exact && p > 0 {
         return Some((h, h));
     }
     if p < 0 {

@@ -102,68 +102,193 @@ fn root_error(x: f64, nearest: f64) -> Ordering {
     if x.is_infinite() { Ordering::Equal } else { product_minus(nearest, nearest, x).reverse() }
 }
 
+/// Exponent field and significand, hidden bit included, of a normal number: `|x| = significand * 2^(field - 1075)`.
+#[inline(always)]
+fn parts(x: f64) -> (i64, i64) {
+    let bits = x.to_bits() as i64;
+    (bits >> 52 & 0x7ff, bits & ((1 << 52) - 1) | 1 << 52)
+}
+
+/// Whether an exponent field is that of a normal number.
+#[inline(always)]
+fn is_normal(field: i64) -> bool {
+    (field - 1) as u64 <= 2045
+}
+
+/// `|a b| - |p|` in units of the last place of the exact product, where `p` is `a b` rounded to nearest; `None` unless
+/// all three are normal numbers.
+///
+/// In those units, 2^(ea + eb - 2150), both sides are whole numbers of some 106 bits, and they differ by at most half
+/// a unit in the last place of `p`, which is 2^53 of them: 64 bits that wrap around hold the difference.
+#[inline(always)]
+fn product_residual(a: f64, b: f64, p: f64) -> Option<i64> {
+    let ((ea, a), (eb, b), (ep, p)) = (parts(a), parts(b), parts(p));
+    (is_normal(ea) & is_normal(eb) & is_normal(ep))
+        .then(|| a.wrapping_mul(b).wrapping_sub(p.wrapping_shl((ep - ea - eb + 1075) as u32)))
+}
+
+/// `|a| - |q b|` in units of the last place of the exact `q b`, where `q` is `a / b` rounded to nearest: at most half
+/// of the significand of `b`. `None` unless all three are normal numbers.
+#[inline(always)]
+fn quotient_residual(a: f64, b: f64, q: f64) -> Option<i64> {
+    product_residual(q, b, a).map(i64::wrapping_neg)
+}
+
+/// `nearest`, a normal number, rounded down: the size of the real result exceeds that of `nearest` by a number of the
+/// sign of `residual`. Written without branches, whose outcome would be as random as the last bit.
+#[inline(always)]
+fn resolve_down(nearest: f64, residual: i64) -> f64 {
+    // All ones below zero. There, sizes and bits rise as numbers fall.
+    let negative = nearest.to_bits() as i64 >> 63;
+    let error = (residual ^ negative) - negative;
+    let step = error >> 63;
+    f64::from_bits((nearest.to_bits() as i64 + ((step ^ negative) - negative)) as u64)
+}
+
+/// Mirror image of [`resolve_down`].
+#[inline(always)]
+fn resolve_up(nearest: f64, residual: i64) -> f64 {
+    let negative = nearest.to_bits() as i64 >> 63;
+    let error = (residual ^ negative) - negative;
+    let step = -error >> 63;
+    f64::from_bits((nearest.to_bits() as i64 - ((step ^ negative) - negative)) as u64)
+}
+
+/// `a + b - s` for `s = a + b` rounded: Knuth's TwoSum, exact unless something overflows, and then NaN or infinite.
+#[inline(always)]
+pub(super) fn sum_residual(a: f64, b: f64, s: f64) -> f64 {
+    let second = s - a;
+    (a - (s - second)) + (b - second)
+}
+
 /// `a + b` rounded down. The sum of opposite infinities is NaN.
+#[inline]
 pub fn add_down(a: f64, b: f64) -> f64 {
     let s = a + b;
-    settle_down(s, sum_error(a, b, s))
+    let residual = sum_residual(a, b, s);
+    if !residual.is_finite() {
+        return add_down_beyond(a, b, s);
+    }
+    if residual < 0.0 { s.next_down() } else { s }
 }
 
 /// `a + b` rounded up. The sum of opposite infinities is NaN.
+#[inline]
 pub fn add_up(a: f64, b: f64) -> f64 {
     let s = a + b;
+    let residual = sum_residual(a, b, s);
+    if !residual.is_finite() {
+        return add_up_beyond(a, b, s);
+    }
+    if residual > 0.0 { s.next_up() } else { s }
+}
+
+#[cold]
+#[inline(never)]
+fn add_down_beyond(a: f64, b: f64, s: f64) -> f64 {
+    settle_down(s, sum_error(a, b, s))
+}
+
+#[cold]
+#[inline(never)]
+fn add_up_beyond(a: f64, b: f64, s: f64) -> f64 {
     settle_up(s, sum_error(a, b, s))
 }
 
 /// `a - b` rounded down. The difference of equal infinities is NaN.
+#[inline]
 pub fn sub_down(a: f64, b: f64) -> f64 {
     add_down(a, -b)
 }
 
 /// `a - b` rounded up. The difference of equal infinities is NaN.
+#[inline]
 pub fn sub_up(a: f64, b: f64) -> f64 {
     add_up(a, -b)
 }
 
 /// `a * b` rounded down, with 0 * inf = 0: an infinite bound stands for arbitrarily large reals, never for infinity.
+#[inline]
 pub fn mul_down(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 {
-        return 0.0;
-    }
     let p = a * b;
-    settle_down(p, product_error(a, b, p))
+    match product_residual(a, b, p) {
+        Some(residual) => resolve_down(p, residual),
+        None => mul_down_beyond(a, b, p),
+    }
+}
+
+/// As [`mul_down`], where an operand or the result is not a normal number.
+#[inline(never)]
+fn mul_down_beyond(a: f64, b: f64, p: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { settle_down(p, product_error(a, b, p)) }
 }
 
 /// `a * b` rounded up, with 0 * inf = 0 as in [`mul_down`].
+#[inline]
 pub fn mul_up(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 {
-        return 0.0;
-    }
     let p = a * b;
-    settle_up(p, product_error(a, b, p))
+    match product_residual(a, b, p) {
+        Some(residual) => resolve_up(p, residual),
+        None => mul_up_beyond(a, b, p),
+    }
+}
+
+/// As [`mul_up`], where an operand or the result is not a normal number.
+#[inline(never)]
+fn mul_up_beyond(a: f64, b: f64, p: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { settle_up(p, product_error(a, b, p)) }
 }
 
 /// `a / b` rounded down. `b` must not be zero, and not both may be infinite.
+#[inline]
 pub fn div_down(a: f64, b: f64) -> f64 {
     let q = a / b;
+    match quotient_residual(a, b, q) {
+        Some(residual) => resolve_down(q, residual),
+        None => div_down_beyond(a, b, q),
+    }
+}
+
+/// As [`div_down`], where an operand or the result is not a normal number.
+#[inline(never)]
+fn div_down_beyond(a: f64, b: f64, q: f64) -> f64 {
     settle_down(q, quotient_error(a, b, q))
 }
 
 /// `a / b` rounded up. `b` must not be zero, and not both may be infinite.
+#[inline]
 pub fn div_up(a: f64, b: f64) -> f64 {
     let q = a / b;
+    match quotient_residual(a, b, q) {
+        Some(residual) => resolve_up(q, residual),
+        None => div_up_beyond(a, b, q),
+    }
+}
+
+/// As [`div_up`], where an operand or the result is not a normal number.
+#[inline(never)]
+fn div_up_beyond(a: f64, b: f64, q: f64) -> f64 {
     settle_up(q, quotient_error(a, b, q))
 }
 
 /// Square root of `x >= 0` rounded down.
+#[inline]
 pub fn sqrt_down(x: f64) -> f64 {
     let r = x.sqrt();
-    settle_down(r, root_error(x, r))
+    match quotient_residual(x, r, r) {
+        Some(residual) => resolve_down(r, residual),
+        None => settle_down(r, root_error(x, r)),
+    }
 }
 
 /// Square root of `x >= 0` rounded up.
+#[inline]
 pub fn sqrt_up(x: f64) -> f64 {
     let r = x.sqrt();
-    settle_up(r, root_error(x, r))
+    match quotient_residual(x, r, r) {
+        Some(residual) => resolve_up(r, residual),
+        None => settle_up(r, root_error(x, r)),
+    }
 }
 
 /// `x` rounded down to `f32`.

@@ -3,7 +3,29 @@
 use super::{Interval, round};
 
 impl Interval {
-    /// `hi - lo` rounded up; NaN if empty.
+    /// IEEE 1788 `inf`: the greatest lower bound, inf if empty. A lower bound of 0 is -0.0, as the standard asks;
+    /// [`Interval::lo`] says +0.0 there, and NaN for the empty set.
+    pub fn inf(self) -> f64 {
+        if self.is_empty() {
+            f64::INFINITY
+        } else if self.lo == 0.0 {
+            -0.0
+        } else {
+            self.lo
+        }
+    }
+
+    /// IEEE 1788 `sup`: the least upper bound, -inf if empty.
+    pub fn sup(self) -> f64 {
+        if self.is_empty() { f64::NEG_INFINITY } else { self.hi }
+    }
+
+    /// IEEE 1788 `midRad`: [`Interval::mid`] and [`Interval::rad`].
+    pub fn mid_rad(self) -> (f64, f64) {
+        (self.mid(), self.rad())
+    }
+
+    /// IEEE 1788 `wid`: `hi - lo` rounded up; NaN if empty.
     pub fn width(self) -> f64 {
         round::sub_up(self.hi, self.lo)
     }
@@ -39,7 +61,7 @@ impl Interval {
         if self.contains(0.0) { 0.0 } else { self.lo.abs().min(self.hi.abs()) }
     }
 
-    /// Whether `x` is a member; infinities and NaN never are.
+    /// IEEE 1788 `isMember`: whether `x` is a member; infinities and NaN never are.
     pub fn contains(self, x: f64) -> bool {
         self.lo <= x && x <= self.hi && x.is_finite()
     }
@@ -61,7 +83,7 @@ impl Interval {
         !(self.lo <= other.hi && other.lo <= self.hi)
     }
 
-    /// The common members.
+    /// IEEE 1788 `intersection`: the common members.
     pub fn intersect(self, other: Self) -> Self {
         if self.disjoint(other) {
             return Self::EMPTY;
@@ -69,7 +91,7 @@ impl Interval {
         Self::raw(self.lo.max(other.lo), self.hi.min(other.hi))
     }
 
-    /// The least interval that holds both sets.
+    /// IEEE 1788 `convexHull`: the least interval that holds both sets.
     pub fn hull(self, other: Self) -> Self {
         if self.is_empty() {
             return other;

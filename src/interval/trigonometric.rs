@@ -13,6 +13,10 @@ struct Turn {
     first: u32,
     /// How many boundaries between quadrants lie in (lo, hi], 0 to 4.
     crossed: u32,
+    /// Sines of both bounds, rounded to nearest.
+    sines: [f64; 2],
+    /// Cosines of both bounds.
+    cosines: [f64; 2],
 }
 
 impl Turn {
@@ -23,14 +27,15 @@ impl Turn {
         if width >= std::f64::consts::TAU {
             return None;
         }
-        let (first, last) = (quadrant(x.lo()), quadrant(x.hi()));
+        let (low, high) = (core_math::sincos(x.lo), core_math::sincos(x.hi));
+        let (first, last) = (quadrant(low), quadrant(high));
         // The number of boundaries is known modulo 4, and at most 4, as 5 need more than 4 quadrants' length. It is 0
         // or 4 for equal quadrants: 0 if the length is at most pi/2, 4 if it is more than 3 pi/2. 3 lies between.
         let crossed = match (last + 4 - first) % 4 {
             0 if width > 3.0 => 4,
             n => n,
         };
-        Some(Self { first, crossed })
+        Some(Self { first, crossed, sines: [low.0, high.0], cosines: [low.1, high.1] })
     }
 
     /// Whether the boundary into `quadrant` is crossed.
@@ -39,9 +44,8 @@ impl Turn {
     }
 }
 
-/// The quadrant of the finite number `x`, modulo 4.
-fn quadrant(x: f64) -> u32 {
-    let (sin, cos) = core_math::sincos(x);
+/// The quadrant of a number with this sine and cosine, modulo 4.
+fn quadrant((sin, cos): (f64, f64)) -> u32 {
     match (sin >= 0.0, cos >= 0.0) {
         (true, true) => 0,
         (true, false) => 1,
@@ -50,15 +54,15 @@ fn quadrant(x: f64) -> u32 {
     }
 }
 
-/// Bounds of sine or cosine between its extremes: `peak` and `trough` tell whether those are taken.
-fn wave(x: Interval, f: impl Fn(f64) -> f64, exact: impl Fn(f64) -> bool, peak: bool, trough: bool) -> Interval {
-    let bounds = |t: f64| {
-        let nearest = f(t);
-        if exact(t) { (nearest, nearest) } else { (nearest.next_down(), nearest.next_up()) }
-    };
-    let (a, b) = (bounds(x.lo), bounds(x.hi));
-    let lo = if trough { -1.0 } else { a.0.min(b.0).max(-1.0) };
-    Interval::raw(lo, if peak { 1.0 } else { a.1.max(b.1).min(1.0) })
+/// Bounds of sine or cosine between its extremes, from the rounded values at both ends: `peak` and `trough` tell
+/// whether the extremes are taken.
+fn wave(x: Interval, [a, b]: [f64; 2], peak: bool, trough: bool) -> Interval {
+    // The values at 0 are exact, and no others (Lindemann).
+    let (a_exact, b_exact) = (x.lo == 0.0, x.hi == 0.0);
+    let down = |value: f64, exact| if exact { value } else { value.next_down() };
+    let up = |value: f64, exact| if exact { value } else { value.next_up() };
+    let lo = if trough { -1.0 } else { down(a, a_exact).min(down(b, b_exact)).max(-1.0) };
+    Interval::raw(lo, if peak { 1.0 } else { up(a, a_exact).max(up(b, b_exact)).min(1.0) })
 }
 
 impl Interval {
@@ -70,7 +74,7 @@ impl Interval {
         match Turn::of(self) {
             None => Self { lo: -1.0, hi: 1.0 },
             // The sine is 1 where quadrant 1 begins and -1 where quadrant 3 does.
-            Some(turn) => wave(self, core_math::sin, |x| x == 0.0, turn.enters(1), turn.enters(3)),
+            Some(turn) => wave(self, turn.sines, turn.enters(1), turn.enters(3)),
         }
     }
 
@@ -82,7 +86,7 @@ impl Interval {
         match Turn::of(self) {
             None => Self { lo: -1.0, hi: 1.0 },
             // The cosine is 1 where quadrant 0 begins and -1 where quadrant 2 does.
-            Some(turn) => wave(self, core_math::cos, |x| x == 0.0, turn.enters(0), turn.enters(2)),
+            Some(turn) => wave(self, turn.cosines, turn.enters(0), turn.enters(2)),
         }
     }
 
@@ -94,15 +98,18 @@ impl Interval {
         if self.has_tangent_pole() {
             return Self::ENTIRE;
         }
-        // Increasing between poles.
-        let bound =
-            |x: f64| if x == 0.0 { (0.0, 0.0) } else { (core_math::tan(x).next_down(), core_math::tan(x).next_up()) };
-        Self::raw(bound(self.lo).0, bound(self.hi).1)
+        // Increasing between poles, and exact where it is 0: at 0 alone.
+        let (lo, hi) = (core_math::tan(self.lo), core_math::tan(self.hi));
+        Self::raw(if lo == 0.0 { lo } else { lo.next_down() }, if hi == 0.0 { hi } else { hi.next_up() })
     }
 
     /// Whether an odd multiple of pi/2 may be a member: exact but for intervals that are about as long as a turn or
     /// longer, which have one anyway.
     pub(super) fn has_tangent_pole(self) -> bool {
+        let principal = Self { lo: -Self::HALF_PI.lo, hi: Self::HALF_PI.lo };
+        if principal.contains_interval(self) {
+            return false;
+        }
         Turn::of(self).is_none_or(|turn| turn.enters(1) || turn.enters(3))
     }
 }

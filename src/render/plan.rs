@@ -2,14 +2,14 @@
 
 use std::fmt;
 
+use crate::derive;
 use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::derive::Spec;
-use crate::graph::AffineForm;
-use crate::graph::Graph;
-use crate::graph::Op;
 use crate::graph::Value;
+use crate::interval::Interval;
+use crate::program::scene::COORDINATES;
 use crate::program::scene::Projection;
 use crate::program::scene::Scene;
 use crate::program::scene::Shape;
@@ -113,53 +113,21 @@ impl fmt::Display for Plan {
     }
 }
 
-/// The arithmetic that refutes cells of beams, with the reason; everything else is interval arithmetic. Affine forms cost
-/// several times as much as intervals and pay where the same quantity enters a formula several times, through operations that have an affine form (Hijazi 2008, table
-/// 7.1: 1.5 to 4 times faster for expanded polynomials, slower for superquadrics).
-pub fn arithmetic(graph: &Graph, field: Value, choice: Enclosures) -> (Arithmetic, &'static str) {
+/// The arithmetic that refutes cells of beams or boxes, with the reason; everything else is interval arithmetic.
+pub fn arithmetic(scene: &Scene, shape: &Shape, choice: Enclosures) -> (Arithmetic, String) {
     match choice {
-        Enclosures::Interval => return (Arithmetic::Interval, "intervals were asked for"),
-        Enclosures::Affine => return (Arithmetic::Affine, "affine forms were asked for"),
+        Enclosures::Interval => return (Arithmetic::Interval, "intervals were asked for".to_owned()),
+        Enclosures::Affine => return (Arithmetic::Affine, "affine forms were asked for".to_owned()),
         Enclosures::Auto => {}
     }
-    let needed = graph.reachable(&[field]);
-    let mut uses = vec![0usize; graph.len()];
-    let mut opaque = 0usize;
-    let mut products = 0usize;
-    let mut varies = vec![false; graph.len()];
-    for (value, node) in graph.iter().filter(|(value, _)| needed[value.index()]) {
-        varies[value.index()] =
-            matches!(node.op, Op::Var(_)) || node.operands().iter().any(|operand| varies[operand.index()]);
-        for operand in node.operands() {
-            uses[operand.index()] += 1;
-        }
-        if !varies[value.index()] {
-            continue;
-        }
-        if node.op.arity() > 0 && node.op.affine() == AffineForm::ThroughInterval {
-            opaque += 1;
-        }
-        products += usize::from(matches!(node.op, Op::Mul));
-    }
-    let repeated: usize = graph
+    let domain: Vec<(&str, Interval)> = COORDINATES.into_iter().zip(scene.domain.iter().copied()).collect();
+    let parameters: Vec<(&str, Interval)> = scene
+        .parameters
         .iter()
-        .filter(|(value, _)| varies[value.index()])
-        .map(|(value, _)| uses[value.index()].saturating_sub(1))
-        .sum();
-    if needed.iter().filter(|&&needed| needed).count() > LARGE {
-        (Arithmetic::Interval, "affine forms of so many operations would take longer to compile than they save")
-    } else if opaque > 0 {
-        (Arithmetic::Interval, "some operations have no affine form")
-    } else if repeated < REPEATED || products < REPEATED {
-        (Arithmetic::Interval, "few quantities enter the formula more than once")
-    } else {
-        (Arithmetic::Affine, "quantities enter the formula several times, through products")
+        .map(|parameter| (parameter.name.as_str(), parameter.range.unwrap_or(Interval::ENTIRE)))
+        .collect();
+    match derive::choose(&scene.graph, shape.field, &domain, &parameters) {
+        Some(choice) => (choice.arithmetic, choice.to_string()),
+        None => (Arithmetic::Interval, "the formula is too large to try affine forms on".to_owned()),
     }
 }
-
-/// Operations from which on `auto` leaves affine forms alone: they are several times the code (a polynomial of 300 terms:
-/// 3.4 s against 0.1 s for a small picture).
-const LARGE: usize = 300;
-
-/// Repeated uses of quantities, and products, from which on `auto` takes affine forms.
-const REPEATED: usize = 3;

@@ -131,7 +131,7 @@ impl Plane {
         let mut plan = Plan::default();
         let mut kernels = Vec::new();
         for shape in &scene.shapes {
-            let (chosen, reason) = arithmetic(&scene.graph, shape.field, options.enclosures);
+            let (chosen, reason) = arithmetic(scene, shape, options.enclosures);
             plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
             let rounding = options.rounding;
             let orders = Orders { scene, shape, reach: None, rounding, arithmetic: chosen };

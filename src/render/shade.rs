@@ -36,7 +36,7 @@ const SKY: [[f64; 3]; 2] = [[0.955, 0.965, 0.98], [0.80, 0.835, 0.88]];
 /// Below this share of the field's usual gradient, the gradient at a point is too near a singularity for a normal.
 const FLAT: f64 = 1e-9;
 
-/// Half the width of the stencil that stands in there, relative to the domain.
+/// How far from there gradients are taken instead, relative to the domain.
 const STENCIL: f64 = 1e-3;
 
 /// A drawn point that wants a normal.
@@ -101,8 +101,8 @@ impl Gradients {
         results
     }
 
-    /// Normals of spots of this shape. Where the gradient vanishes or is undefined, differences over a wider stencil
-    /// take its place, and where those fail too the surface faces the viewer.
+    /// Normals of spots of this shape. Where the gradient vanishes or is undefined, those around it take its place, and
+    /// where they fail too the surface faces the viewer.
     pub fn normals(&mut self, spots: &[Spot]) -> Vec<DVec3> {
         let points: Vec<[f64; 3]> = spots.iter().map(|spot| spot.ray.at(spot.t)).collect();
         let gradients = self.run(&points);
@@ -119,7 +119,7 @@ impl Gradients {
                 Surface::Field => {
                     let length = gradient.length();
                     let plain = (length.is_finite() && length > FLAT * self.usual).then(|| gradient / length);
-                    plain.or_else(|| self.differences(*point))
+                    plain.or_else(|| self.around(*point))
                 }
             };
             let normal = normal.unwrap_or_else(|| view.normalize());
@@ -129,14 +129,20 @@ impl Gradients {
         normals
     }
 
-    fn differences(&mut self, point: [f64; 3]) -> Option<DVec3> {
+    /// The direction that the gradients around a point have in common. Where the field is a power of one with a gradient,
+    /// as (g)^3 is, they are multiples of it with either sign, so they are summed as the longest one points; differences
+    /// of the field itself would be powers of that gradient's components.
+    fn around(&mut self, point: [f64; 3]) -> Option<DVec3> {
         let mut points = [point; 6];
         for axis in 0..3 {
             points[2 * axis][axis] += self.stencil;
             points[2 * axis + 1][axis] -= self.stencil;
         }
-        let values = self.run(&points);
-        DVec3::from_array(std::array::from_fn(|axis| values[2 * axis].0 - values[2 * axis + 1].0)).try_normalize()
+        let gradients = self.run(&points).into_iter().map(|(_, gradient)| gradient);
+        let gradients: Vec<DVec3> = gradients.filter(|gradient| gradient.is_finite()).collect();
+        let longest = *gradients.iter().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+        let aligned = |gradient: &DVec3| if gradient.dot(longest) < 0.0 { -gradient } else { *gradient };
+        gradients.iter().map(aligned).sum::<DVec3>().try_normalize()
     }
 }
 

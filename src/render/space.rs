@@ -65,7 +65,7 @@ impl<T: Format> ShapeKernels<T> {
         options: &Options,
         (backend, plan): (&dyn Backend, &mut Plan),
     ) -> Result<Self, Diagnostic> {
-        let (beams, reason) = arithmetic(&scene.graph, shape.field, options.enclosures);
+        let (beams, reason) = arithmetic(scene, shape, options.enclosures);
         plan.notes.push(format!("arithmetic of {}: {reason}", shape.name));
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: options.rounding, arithmetic: beams };
@@ -168,7 +168,9 @@ impl Space {
         let camera = &self.geometry.camera;
         let holds = |tile: &&Tile| (tile.x..=tile.last_x).contains(&x) && (tile.y..=tile.last_y).contains(&y);
         let tile = *self.geometry.tiles.iter().find(holds)?;
-        Some(Frame::new(camera, tile).ray(x - tile.x, y - tile.y))
+        // A frame of this pixel alone: the tile's frame would compute all its columns and rows.
+        let pixel = Tile { x, y, last_x: x, last_y: y, ..tile };
+        Some(Frame::new(camera, pixel).ray(0, 0))
     }
 
     /// Renders with the given values of the scene's parameters, in the scene's order.

@@ -80,7 +80,7 @@ pub fn verify(
     let constants = shared_inputs(&geometry);
     let mut programs = Vec::new();
     for shape in &scene.shapes {
-        let (beams, _) = arithmetic(&scene.graph, shape.field, enclosures);
+        let (beams, _) = arithmetic(scene, shape, enclosures);
         let reach = Some(geometry.reach);
         let orders = Orders { scene, shape, reach, rounding: Rounding::Outward, arithmetic: beams };
         let specs = [orders.beam(), orders.slope(), orders.verdicts(), orders.face()];

@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::derive::Extension;
 use crate::derive::Formula;
+use crate::derive::Symbols;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::diagnostic::did_you_mean;
@@ -12,8 +13,8 @@ use crate::interval::Interval;
 use crate::interval::decimal;
 use crate::session::expression::Expression;
 
-/// Extensions that cost more operations than this are not tried unasked.
-const MAX_OPERATIONS: u64 = 10_000_000;
+/// Operations of the natural extension from which on a formula counts as large.
+const MAX_OPERATIONS: u64 = 20_000;
 
 /// Which arithmetic encloses an expression.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,10 +81,16 @@ impl fmt::Display for Choice {
     }
 }
 
-/// The extensions that `auto` tries.
+/// The extensions that `auto` tries: for large formulas not those whose cost grows faster than the formula.
 fn tried(formula: &Formula) -> impl Iterator<Item = Extension> {
-    let affordable = |extension| formula.operations(extension) <= MAX_OPERATIONS;
-    Extension::ALL.iter().copied().filter(move |&extension| extension == Extension::Natural || affordable(extension))
+    let small = formula.operations(Extension::Natural) <= MAX_OPERATIONS;
+    let steep = |extension| {
+        matches!(
+            extension,
+            Extension::Affine(Symbols::Full) | Extension::Intersected(Symbols::Full) | Extension::SecondOrder
+        )
+    };
+    Extension::ALL.iter().copied().filter(move |&extension| small || !steep(extension))
 }
 
 /// What all extensions prove together: each of them encloses the same values, so their intersection does too, and each
@@ -125,7 +132,7 @@ impl Answer {
         };
         line += &format!("{interval}  width {}  {}", width(interval), self.value.decoration());
         if choice == Choice::Auto && self.by != Extension::Natural {
-            line += &format!("  ({})", self.by);
+            line += &format!("  (narrowest: {})", self.by);
         }
         if let Some(reason) = expression.shortfall(boxes) {
             line += &format!("\n  {reason}");

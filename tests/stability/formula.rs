@@ -1,10 +1,11 @@
-//! Expressions as Imp reads them, with every kind of answer that it gives: reference, compiled kernels of both formats,
-//! and plain points.
+//! Expressions as Imp reads them, with what it says of them: by reference arithmetic in every extension and by compiled
+//! kernels of both formats.
 
 use std::sync::Arc;
 
 use imp::derive;
 use imp::derive::Arithmetic;
+use imp::derive::Extension;
 use imp::derive::Output;
 use imp::derive::Rounding;
 use imp::derive::Spec;
@@ -12,10 +13,8 @@ use imp::diagnostic::SourceMap;
 use imp::graph::Graph;
 use imp::graph::Value;
 use imp::graph::enclose;
-use imp::interpret::Interpreter;
 use imp::interval::Decorated;
 use imp::interval::Interval;
-use imp::kernel::Backend;
 use imp::kernel::Kernel;
 use imp::kernel::Packet;
 use imp::kernel::Real;
@@ -90,49 +89,65 @@ impl Formula {
         enclose(&self.graph, &[self.root], &inputs)[0]
     }
 
-    fn spec(&self, arithmetic: Arithmetic, rounding: Rounding) -> Spec {
-        let output = if arithmetic == Arithmetic::Point { Output::Value } else { Output::Enclosure };
+    fn spec(&self, rounding: Rounding) -> Spec {
         Spec {
             graph: Arc::new(self.graph.clone()),
             inputs: self.graph.variables().to_vec(),
             uniforms: Vec::new(),
-            outputs: vec![output(self.root)],
+            outputs: vec![Output::Enclosure(self.root)],
             domain: Vec::new(),
             promises: Vec::new(),
-            arithmetic,
+            arithmetic: Arithmetic::Interval,
             symbols: Vec::new(),
             rounding,
         }
     }
 
-    /// The compiled kernel in single precision.
-    pub fn single(&self) -> Boxes<f32> {
-        Boxes::new(session::backend().compile_f32(&self.spec(Arithmetic::Interval, Rounding::Outward)), self)
-    }
-
-    /// The compiled kernel in double precision.
-    pub fn double(&self) -> Boxes<f64> {
-        Boxes::new(session::backend().compile_f64(&self.spec(Arithmetic::Interval, Rounding::Outward)), self)
+    /// Everything that encloses the formula and must hold.
+    pub fn answers(&self) -> Answers {
+        let spec = self.spec(Rounding::Outward);
+        Answers {
+            reference: derive::Formula::new(&self.graph, self.root),
+            single: Boxes::new(session::backend().compile_f32(&spec), self),
+            double: Boxes::new(session::backend().compile_f64(&spec), self),
+            variables: self.inputs(&[0, 1, 2]),
+        }
     }
 
     /// Intervals as other programs compute them: every operation rounded to nearest.
     pub fn nearest_single(&self) -> Boxes<f32> {
-        Boxes::new(session::backend().compile_f32(&self.spec(Arithmetic::Interval, Rounding::Nearest)), self)
+        Boxes::new(session::backend().compile_f32(&self.spec(Rounding::Nearest)), self)
     }
 
     /// The same in double precision.
     pub fn nearest_double(&self) -> Boxes<f64> {
-        Boxes::new(session::backend().compile_f64(&self.spec(Arithmetic::Interval, Rounding::Nearest)), self)
+        Boxes::new(session::backend().compile_f64(&self.spec(Rounding::Nearest)), self)
+    }
+}
+
+/// The reference in every extension, and the compiled kernels of both formats.
+pub struct Answers {
+    reference: derive::Formula,
+    single: Boxes<f32>,
+    double: Boxes<f64>,
+    variables: Vec<usize>,
+}
+
+impl Answers {
+    /// The enclosure over a box by the reference in each extension and by each kernel, under their names.
+    pub fn each(&self, values: &[Interval]) -> Vec<(&'static str, Interval)> {
+        let inputs: Vec<Decorated> = self.variables.iter().map(|&i| Decorated::new(values[i])).collect();
+        let reference = |&way: &Extension| (way.name(), self.reference.enclose(way, &inputs).interval());
+        let mut all: Vec<(&str, Interval)> = Extension::ALL.iter().map(reference).collect();
+        all.extend([("kernel in f32", self.single.enclose(values)), ("kernel in f64", self.double.enclose(values))]);
+        all
     }
 
-    /// The value at a point in double precision, every operation rounded to nearest.
-    pub fn plain(&self, values: &[f64]) -> f64 {
-        let kernel: Arc<dyn Kernel<f64>> =
-            Interpreter.compile_f64(&self.spec(Arithmetic::Point, Rounding::Nearest)).expect("a point program");
-        let inputs: Vec<Packet<f64>> = self.inputs(values).into_iter().map(Packet::splat).collect();
-        let mut outputs = [Packet::default()];
-        kernel.run(&[], &inputs, &mut outputs);
-        outputs[0].lanes()[0]
+    /// Asserts that each of them is as it must be.
+    pub fn all(&self, values: &[Interval], holds: impl Fn(Interval) -> bool) {
+        for (name, interval) in self.each(values) {
+            assert!(holds(interval), "{name} over {values:?}: {interval}");
+        }
     }
 }
 

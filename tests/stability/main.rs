@@ -7,8 +7,6 @@ mod expressions;
 mod first_root;
 mod formula;
 mod functions;
-#[path = "../support/oracle.rs"]
-mod oracle;
 mod plain;
 mod poles;
 mod rays;
@@ -56,7 +54,7 @@ cases! {
     rays "Rays that graze or come from afar":
         near_tangent touching grazing far_away small large shifted expanded zoomed_boxes zoomed_picture;
     surfaces "Surfaces that taper, touch and cross":
-        steiner_axes steiner_on_axis teardrop_neck heart_dent sextic_nodes decic_nodes crosscap power_200 squared;
+        steiner_axes steiner_below_axes steiner_on_axes teardrop_neck teardrop_point heart heart_normals sextic_nodes decic_nodes crosscap power_200 squared;
     poles "Poles without a root":
         plane tangent shell inverse;
     first_root "First roots":
@@ -99,6 +97,24 @@ fn page() -> String {
     page
 }
 
+/// Whether this machine is of the kind that has written the page: on others, kernels without fused operations and other
+/// libraries of functions may decide a ray more or less.
+fn is_usual_machine() -> bool {
+    #[cfg(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu"))]
+    return std::is_x86_feature_detected!("fma");
+    #[cfg(not(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu")))]
+    return false;
+}
+
+/// A line of the page; on other machines without what is computed.
+fn comparable(line: &str) -> String {
+    let cells: Vec<&str> = line.split(" | ").collect();
+    match cells[..] {
+        [name, _, _, _, why] if !is_usual_machine() => format!("{name} | {why}"),
+        _ => line.to_owned(),
+    }
+}
+
 #[test]
 fn the_page_is_up_to_date() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/hard-cases.md");
@@ -108,12 +124,9 @@ fn the_page_is_up_to_date() {
         return;
     }
     let written = fs::read_to_string(&path).unwrap_or_default();
-    for (new, old) in page.lines().zip(written.lines()) {
+    let [new, old] = [&page, &written].map(|page| page.lines().map(comparable).collect::<Vec<_>>());
+    for (new, old) in new.iter().zip(&old) {
         assert_eq!(new, old, "docs/hard-cases.md is out of date; IMP_BLESS=1 renews it");
     }
-    assert_eq!(
-        page.lines().count(),
-        written.lines().count(),
-        "docs/hard-cases.md is out of date; IMP_BLESS=1 renews it"
-    );
+    assert_eq!(new.len(), old.len(), "docs/hard-cases.md is out of date; IMP_BLESS=1 renews it");
 }

@@ -190,29 +190,30 @@ pub fn value<T: Plain, S: Surface>(ray: &Ray, t: T) -> T {
     S::plain([0, 1, 2].map(|c| T::of(ray.origin[c]) + T::of(ray.direction[c]) * t))
 }
 
-/// The usual ray caster without intervals: equal steps until the sign changes, then bisection.
-pub fn march<T: Plain, S: Surface>(ray: &Ray, [start, end]: [f64; 2], steps: u32) -> Option<f64> {
+/// The usual root finder without intervals: equal steps until the sign changes, then bisection.
+pub fn march<T: Plain>(f: impl Fn(T) -> T, [start, end]: [f64; 2], steps: u32) -> Option<f64> {
     let at = |i: u32| T::of(start + (end - start) * f64::from(i) / f64::from(steps));
     let zero = T::of(0.0);
-    let mut before = value::<T, S>(ray, at(0));
+    let mut before = f(at(0));
     for i in 1..=steps {
-        let after = value::<T, S>(ray, at(i));
+        let after = f(at(i));
         if (before < zero && after >= zero) || (before > zero && after <= zero) {
-            return Some(bisect::<T, S>(ray, at(i - 1), at(i), before < zero).to_f64());
+            return Some(bisect(&f, at(i - 1), at(i)).to_f64());
         }
         before = after;
     }
     None
 }
 
-/// Halves a stretch that ends in opposite signs until its ends are neighbours in the format.
-fn bisect<T: Plain, S: Surface>(ray: &Ray, mut lo: T, mut hi: T, rising: bool) -> T {
+/// Halves a stretch whose ends have opposite signs until they are neighbours in the format.
+pub fn bisect<T: Plain>(f: impl Fn(T) -> T, mut lo: T, mut hi: T) -> T {
+    let rising = f(lo) < T::of(0.0);
     loop {
         let middle = lo + (hi - lo) / T::of(2.0);
         if middle <= lo || middle >= hi {
             return middle;
         }
-        if (value::<T, S>(ray, middle) < T::of(0.0)) == rising {
+        if (f(middle) < T::of(0.0)) == rising {
             lo = middle;
         } else {
             hi = middle;

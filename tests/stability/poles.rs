@@ -1,16 +1,11 @@
 //! Poles change sign without a root.
 
-use imp::render::Certainty;
-
 use crate::case::Case;
 use crate::plain::Number;
 use crate::plain::Plain;
 use crate::plain::Surface;
-use crate::plain::march;
-use crate::shot::check;
-use crate::shot::marching;
+use crate::shot::Survey;
 use crate::shot::options;
-use crate::shot::shoot;
 
 /// A surface without a zero in its domain: the numerator is 1 or has one sign there.
 macro_rules! pole {
@@ -38,35 +33,26 @@ pole!(Shell, "1 / (x^2 + y^2 + z^2 - 1) = 0\ndomain [-1.2, 1.2]^3", |x, y, z| {
 });
 
 fn without_root<S: Surface>(name: &'static str, why: &'static str) -> Case {
-    let shot = shoot(S::TEXT, &options(32));
-    let looks = shot.looks();
-    let tally = check::<S>(&looks);
-    assert_eq!(tally.proved, 0);
-    let single = looks.iter().filter(|look| march::<f32, S>(&look.ray, look.inside, 1000).is_some()).count();
-    let double = looks.iter().filter(|look| march::<f64, S>(&look.ray, look.inside, 1000).is_some()).count();
-    let drawn = looks.iter().filter(|look| look.depth.is_some()).count();
-    println!("{name} {tally:?} {drawn}");
-    assert!(single > 50 && double > 50, "{single}, {double}");
-    Case {
-        name,
-        why,
-        single: format!("{single} roots"),
-        double: format!("{double} roots"),
-        imp: format!("0 proved, {} missed, {} unknown, {drawn} drawn", tally.missed, tally.unknown),
-        cost: format!("{} evaluations", shot.evaluations()),
-    }
+    let survey = Survey::new::<S>(&[String::new()], &options(32));
+    let [single, double] = survey.marched::<S>();
+    assert!(survey.tally.proved == 0 && survey.looks.iter().all(|look| look.depth.is_none()));
+    assert!(single.invented > 100 && double.invented > 100, "{single}; {double}");
+    survey.case(name, why, [single, double])
 }
 
 pub fn plane() -> Case {
-    without_root::<Plane>("1 / (x - 0.3) = 0", "")
+    without_root::<Plane>(
+        "1 / (x - 0.3) = 0",
+        "The value jumps from -inf to inf; Imp sees that the numerator has no zero.",
+    )
 }
 
 pub fn tangent() -> Case {
-    without_root::<Tangent>("tan x = 0 on [1, 2]", "")
+    without_root::<Tangent>("tan x = 0 on [1, 2]", "The same at pi/2; the numerator is sin x.")
 }
 
 pub fn shell() -> Case {
-    without_root::<Shell>("1 / (x^2 + y^2 + z^2 - 1) = 0", "")
+    without_root::<Shell>("1 / (x^2 + y^2 + z^2 - 1) = 0", "A sphere of poles looks like a sphere.")
 }
 
 struct Inverse;
@@ -88,18 +74,13 @@ impl Surface for Inverse {
 }
 
 pub fn inverse() -> Case {
-    let shot = shoot(&format!("{}\ndomain [-2, 3] x [-1.8, 1.8] x [-2.5, 2.5]", Inverse::TEXT), &options(40));
-    let looks = shot.looks();
-    let tally = check::<Inverse>(&looks);
-    let (single, double) = (marching::<f32, Inverse>(&looks, 1000), marching::<f64, Inverse>(&looks, 1000));
-    let drawn = looks.iter().filter(|look| look.certainty == Certainty::Unknown && look.depth.is_some()).count();
-    println!("{tally:?} {single} {double} {drawn}");
-    Case {
-        name: "1 / (x - y^2) = z",
-        why: "",
-        single: single.to_string(),
-        double: double.to_string(),
-        imp: format!("{} proved, {} missed, {} unknown", tally.proved, tally.missed, tally.unknown),
-        cost: format!("{} evaluations", shot.evaluations()),
-    }
+    let survey = Survey::new::<Inverse>(&["domain [-2, 3] x [-1.8, 1.8] x [-2.5, 2.5]".to_owned()], &options(40));
+    let [single, double] = survey.marched::<Inverse>();
+    assert!(survey.tally.proved > 400 && survey.tally.unknown < 10, "{:?}", survey.tally);
+    assert!(single.wrong > 100 && double.wrong > 100 && double.invented > 50, "{single}; {double}");
+    survey.case(
+        "1 / (x - y^2) = z",
+        "A pole along x = y^2 in front of the sheets, or without one behind it.",
+        [single, double],
+    )
 }

@@ -1,5 +1,7 @@
 //! Small pictures, ray by ray against exact polynomials and beside plain root finding on the very same rays.
 
+use std::fmt;
+
 use imp::program::scene::Scene;
 use imp::render::Certainty;
 use imp::render::Control;
@@ -12,12 +14,14 @@ use imp::render::Renderer;
 use imp::session;
 use imp::session::Source;
 
+use crate::case::Case;
 use crate::exact::is_clear;
 use crate::exact::is_defined;
 use crate::exact::sign;
 use crate::plain::Plain;
 use crate::plain::Surface;
 use crate::plain::march;
+use crate::plain::value;
 
 /// A picture with its rays.
 pub struct Shot {
@@ -95,9 +99,10 @@ pub struct Tally {
     pub unknown: usize,
 }
 
-impl Tally {
-    pub fn rays(&self) -> usize {
-        self.proved + self.missed + self.unknown
+/// As in the table.
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} proved, {} missed, {} unknown", self.proved, self.missed, self.unknown)
     }
 }
 
@@ -141,15 +146,9 @@ pub struct Faults {
     pub invented: usize,
 }
 
-impl Faults {
-    pub fn sum(&self) -> usize {
-        self.lost + self.wrong + self.invented
-    }
-}
-
 /// As a reader wants it: `12 lost, 3 wrong`.
-impl std::fmt::Display for Faults {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let parts = [(self.lost, "lost"), (self.wrong, "wrong"), (self.invented, "invented")];
         let parts: Vec<String> =
             parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
@@ -157,15 +156,18 @@ impl std::fmt::Display for Faults {
     }
 }
 
-/// Judges a root finder on checked rays. A root farther than `tolerance` of the ray's way inside the domain from the proved
-/// one is a wrong one.
+/// Judges a root finder on checked rays. A root farther from the proved bracket than `tolerance` of the ray's way inside
+/// the domain is a wrong one.
 pub fn faults(looks: &[Look], tolerance: f64, find: impl Fn(&Ray, [f64; 2]) -> Option<f64>) -> Faults {
     let mut faults = Faults::default();
     for look in looks {
         let far = tolerance * (look.inside[1] - look.inside[0]);
         match (look.certainty, look.depth, find(&look.ray, look.inside)) {
             (Certainty::Hit, Some(_), None) => faults.lost += 1,
-            (Certainty::Hit, Some(depth), Some(t)) if (t - depth.t).abs() > far => faults.wrong += 1,
+            (Certainty::Hit, Some(depth), Some(t)) => {
+                let [a, b] = depth.bracket;
+                faults.wrong += usize::from(t < a - far || t > b + far);
+            }
             (Certainty::Miss, _, Some(_)) => faults.invented += 1,
             _ => {}
         }
@@ -173,7 +175,55 @@ pub fn faults(looks: &[Look], tolerance: f64, find: impl Fn(&Ray, [f64; 2]) -> O
     faults
 }
 
-/// The faults of marching in so many equal steps.
-pub fn marching<T: Plain, S: Surface>(looks: &[Look], steps: u32) -> Faults {
-    faults(looks, 1e-3, |ray, inside| march::<T, S>(ray, inside, steps))
+/// Steps of the plain march. Not a round number, which would put a sample into the middle of a symmetric domain.
+pub const STEPS: u32 = 997;
+
+/// The faults of marching in equal steps.
+pub fn marching<T: Plain, S: Surface>(looks: &[Look]) -> Faults {
+    faults(looks, 1e-3, |ray, inside| march(|t: T| value::<T, S>(ray, t), inside, STEPS))
+}
+
+/// What a surface looks like from several cameras, checked.
+pub struct Survey {
+    pub looks: Vec<Look>,
+    pub tally: Tally,
+    pub evaluations: u64,
+}
+
+impl Survey {
+    /// Renders the surface once for each view: the statements of domain and camera.
+    pub fn new<S: Surface>(views: &[String], options: &Options) -> Self {
+        let (mut looks, mut evaluations) = (Vec::new(), 0);
+        for view in views {
+            let shot = shoot(&format!("{}\n{view}", S::TEXT), options);
+            looks.extend(shot.looks());
+            evaluations += shot.evaluations();
+        }
+        let tally = check::<S>(&looks);
+        Self { looks, tally, evaluations }
+    }
+
+    /// The case of this survey against plain root finders of both formats.
+    pub fn case(&self, name: &'static str, why: &'static str, [single, double]: [Faults; 2]) -> Case {
+        Case {
+            name,
+            why,
+            single: single.to_string(),
+            double: double.to_string(),
+            imp: self.tally.to_string(),
+            cost: format!("{} evaluations for {} rays", self.evaluations, self.looks.len()),
+        }
+    }
+
+    /// The faults of marching in both formats.
+    pub fn marched<S: Surface>(&self) -> [Faults; 2] {
+        [marching::<f32, S>(&self.looks), marching::<f64, S>(&self.looks)]
+    }
+}
+
+/// A camera at `eye` that sees a square window of a side around `target`.
+pub fn window(domain: &str, eye: [f64; 3], target: [f64; 3], side: f64) -> String {
+    let distance = (0..3).map(|i| (eye[i] - target[i]).powi(2)).sum::<f64>().sqrt();
+    let fov = 2.0 * (side / 2.0 / distance).atan().to_degrees();
+    format!("domain {domain}\ncamera(position = {eye:?}, target = {target:?}, fov = {fov:?})")
 }

@@ -4,6 +4,8 @@
 use imp::render::Ray;
 
 use crate::plain::Plain;
+use crate::plain::bisect;
+use crate::plain::march;
 use crate::plain::surface;
 
 surface!(Torus, "(x^2 + y^2 + z^2 - 0.58)^2 = 1.96 (0.09 - z^2)", |x, y, z| {
@@ -57,27 +59,9 @@ impl<T: Plain> Quartic<T> {
         ((T::int(4) * t + T::int(3) * self.b) * t + T::int(2) * self.c) * t + self.d
     }
 
-    /// Equal steps over the polynomial until its sign changes. In and out in the ray's own parameter.
-    pub fn march(&self, [start, end]: [f64; 2], steps: u32) -> Option<f64> {
-        let at = |i: u32| T::of(start + (end - start) * f64::from(i) / f64::from(steps)) * self.speed;
-        let inside = |t: T| self.value(t) < T::int(0);
-        let first = (1..=steps).find(|&i| inside(at(i)) != inside(at(i - 1)))?;
-        Some((self.bisect(at(first - 1), at(first)) / self.speed).to_f64())
-    }
-
-    fn bisect(&self, mut lo: T, mut hi: T) -> T {
-        let inside = self.value(lo) < T::int(0);
-        loop {
-            let middle = (lo + hi) / T::int(2);
-            if middle <= lo || middle >= hi {
-                return middle;
-            }
-            if (self.value(middle) < T::int(0)) == inside {
-                lo = middle;
-            } else {
-                hi = middle;
-            }
-        }
+    /// Equal steps over the polynomial, in and out in the ray's own parameter.
+    pub fn march(&self, stretch: [f64; 2], steps: u32) -> Option<f64> {
+        march(|t| self.value(t * self.speed), stretch, steps)
     }
 
     /// Double derivative bisection as printed: derivative bisection up to the root of the third derivative, t = -b/4, and
@@ -95,7 +79,7 @@ impl<T: Plain> Quartic<T> {
     fn derivative_bisection(&self, mut lo: T, mut hi: T) -> Option<T> {
         let zero = T::int(0);
         if (self.value(lo) < zero) != (self.value(hi) < zero) {
-            return Some(self.bisect(lo, hi));
+            return Some(bisect(|t| self.value(t), lo, hi));
         }
         if self.slope(lo) >= zero || self.slope(hi) <= zero {
             return None;
@@ -107,7 +91,7 @@ impl<T: Plain> Quartic<T> {
                 return None;
             }
             if self.value(middle) < zero {
-                return Some(self.bisect(start, middle));
+                return Some(bisect(|t| self.value(t), start, middle));
             }
             if self.slope(middle) < zero {
                 lo = middle;
@@ -117,12 +101,15 @@ impl<T: Plain> Quartic<T> {
         }
     }
 
-    /// Newton's method from the enclosing sphere with steps of at most 0.15, 60 of them; the caller accepts or discards.
-    pub fn clamped_newton(&self) -> T {
+    /// Newton's method from the enclosing sphere with steps of at most 0.15, 60 of them; the caller accepts or discards. If
+    /// wanted, every step outside the torus goes forward.
+    pub fn clamped_newton(&self, forward: bool) -> T {
         let most = T::ratio(15, 100);
         let mut t = T::int(0);
         for _ in 0..60 {
-            let step = self.value(t) / self.slope(t);
+            let value = self.value(t);
+            let step = value / self.slope(t);
+            let step = if forward && value > T::int(0) && step > T::int(0) { -step } else { step };
             t = t - if step > most {
                 most
             } else if step < -most {

@@ -17,6 +17,15 @@ pub fn big(x: f64) -> BigFloat {
     BigFloat::from_f64(x, 64)
 }
 
+/// a + b without rounding. astro-float makes the full-precision sum of anything and 0 a 0.
+pub fn sum(a: &BigFloat, b: &BigFloat) -> BigFloat {
+    match (a.is_zero(), b.is_zero()) {
+        (true, _) => b.clone(),
+        (_, true) => a.clone(),
+        _ => a.add_full_prec(b),
+    }
+}
+
 /// The value of an elementary operation where it is defined; `None` for operations whose reference enclosure of a point
 /// is tight anyway, so that nothing lies between its ends.
 pub fn value(op: Op, x: f64, y: f64, cc: &mut Consts) -> Option<BigFloat> {
@@ -54,8 +63,8 @@ pub fn value(op: Op, x: f64, y: f64, cc: &mut Consts) -> Option<BigFloat> {
         Op::Atanh => a.atanh(P, RM, cc),
         Op::Cbrt => a.cbrt(P, RM),
         Op::Hypot => {
-            let sum = a.mul_full_prec(&a).add_full_prec(&big(y).mul_full_prec(&big(y)));
-            sum.sqrt(P, RM)
+            let b = big(y);
+            sum(&a.mul_full_prec(&a), &b.mul_full_prec(&b)).sqrt(P, RM)
         }
         Op::Pow if x == 0.0 => big(0.0),
         Op::Pow => a.pow(&big(y), P, RM, cc),

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use fastrand::Rng;
 use imp::interval::Interval;
+use rayon::prelude::*;
 
 const INF: f64 = f64::INFINITY;
 
@@ -31,6 +32,7 @@ macro_rules! operations {
             $($($name,)*)*
             PowInt(i32),
             PowRatio(i32, u32),
+            Rootn(i32),
         }
 
         /// Those without parameters.
@@ -39,9 +41,9 @@ macro_rules! operations {
 }
 
 operations! {
-    arithmetic: Neg Add Sub Mul Div MulAdd Recip Sqr Sqrt Cbrt Hypot Abs Min Max;
-    whole: Sign Floor Ceil Round Trunc Modulo;
-    exponential: Pow Exp Exp2 Exp10 Expm1 Ln Log2 Log10 Log1p;
+    arithmetic: Neg Add Sub Mul Div MulAdd Recip Sqr Sqrt Rsqrt Cbrt Hypot Abs Min Max;
+    whole: Sign Floor Ceil Round RoundTiesEven Trunc Modulo;
+    exponential: Pow Exp Exp2 Exp10 Expm1 Exp2m1 Exp10m1 Ln Log2 Log10 Log1p Log2p1 Log10p1;
     circular: Sin Cos Tan Asin Acos Atan Atan2;
     hyperbolic: Sinh Cosh Tanh Asinh Acosh Atanh;
 }
@@ -55,7 +57,8 @@ impl Operation {
     pub fn all() -> Vec<Self> {
         let whole = [-7, -2, -1, 0, 1, 2, 3, 4, 11, 64, 101].map(PowInt);
         let ratio = [(2, 3), (1, 4), (-1, 3), (-3, 2), (5, 3), (7, 10), (-2, 5)].map(|(p, q)| PowRatio(p, q));
-        PLAIN.iter().copied().chain(whole).chain(ratio).collect()
+        let root = [4, 7, -3, -6].map(Rootn);
+        PLAIN.iter().copied().chain(whole).chain(ratio).chain(root).collect()
     }
 
     pub fn arity(self) -> usize {
@@ -78,6 +81,7 @@ impl Operation {
             Recip => a.recip(),
             Sqr => a.sqr(),
             Sqrt => a.sqrt(),
+            Rsqrt => a.rsqrt(),
             Cbrt => a.cbrt(),
             Hypot => a.hypot(x[1]),
             Abs => a.abs(),
@@ -87,6 +91,7 @@ impl Operation {
             Floor => a.floor(),
             Ceil => a.ceil(),
             Round => a.round(),
+            RoundTiesEven => a.round_ties_even(),
             Trunc => a.trunc(),
             Modulo => a.modulo(x[1]),
             Pow => a.pow(x[1]),
@@ -94,10 +99,14 @@ impl Operation {
             Exp2 => a.exp2(),
             Exp10 => a.exp10(),
             Expm1 => a.expm1(),
+            Exp2m1 => a.exp2m1(),
+            Exp10m1 => a.exp10m1(),
             Ln => a.ln(),
             Log2 => a.log2(),
             Log10 => a.log10(),
             Log1p => a.log1p(),
+            Log2p1 => a.log2p1(),
+            Log10p1 => a.log10p1(),
             Sin => a.sin(),
             Cos => a.cos(),
             Tan => a.tan(),
@@ -113,14 +122,15 @@ impl Operation {
             Atanh => a.atanh(),
             PowInt(n) => a.powi(n),
             PowRatio(p, q) => a.pow_rational(p, q),
+            Rootn(n) => a.rootn(n),
         }
     }
 
     /// How many units in the last place an end may lie outside the tightest one.
     pub fn allowance(self) -> u64 {
         match self {
-            Pow | Exp | Exp2 | Exp10 | Expm1 | Ln | Log2 | Log10 | Log1p | Sin | Cos | Tan | Asin | Acos | Atan | Atan2
-            | Sinh | Cosh | Tanh | Asinh | Acosh | Atanh => 2,
+            Pow | Exp | Exp2 | Exp10 | Expm1 | Exp2m1 | Exp10m1 | Ln | Log2 | Log10 | Log1p | Log2p1 | Log10p1
+            | Sin | Cos | Tan | Asin | Acos | Atan | Atan2 | Sinh | Cosh | Tanh | Asinh | Acosh | Atanh => 2,
             _ => 0,
         }
     }
@@ -132,8 +142,8 @@ impl Operation {
             Div | Modulo => x[1] != 0.0,
             Recip => a != 0.0,
             Sqrt => a >= 0.0,
-            Ln | Log2 | Log10 => a > 0.0,
-            Log1p => a > -1.0,
+            Rsqrt | Ln | Log2 | Log10 => a > 0.0,
+            Log1p | Log2p1 | Log10p1 => a > -1.0,
             Asin | Acos => a.abs() <= 1.0,
             Acosh => a >= 1.0,
             Atanh => a.abs() < 1.0,
@@ -141,6 +151,7 @@ impl Operation {
             Pow => a > 0.0 || a == 0.0 && x[1] > 0.0,
             PowInt(n) => a != 0.0 || n >= 0,
             PowRatio(p, q) => (a != 0.0 || p >= 0) && (a >= 0.0 || q % 2 == 1),
+            Rootn(n) => root(n).is_defined(x),
             _ => true,
         }
     }
@@ -159,12 +170,12 @@ impl Operation {
             Recip => unary(without_zero(a)),
             Div => product(&[a], &without_zero(ranges[1])),
             Sqrt if a.1 >= 0.0 => unary(clipped(0.0, INF)),
-            Ln | Log2 | Log10 if a.1 > 0.0 => unary(clipped(0.0, INF)),
-            Log1p if a.1 > -1.0 => unary(clipped(-1.0, INF)),
+            Rsqrt | Ln | Log2 | Log10 if a.1 > 0.0 => unary(clipped(0.0, INF)),
+            Log1p | Log2p1 | Log10p1 if a.1 > -1.0 => unary(clipped(-1.0, INF)),
             Asin | Acos if a.1 >= -1.0 && a.0 <= 1.0 => unary(clipped(-1.0, 1.0)),
             Acosh if a.1 >= 1.0 => unary(clipped(1.0, INF)),
             Atanh if a.1 > -1.0 && a.0 < 1.0 => unary(clipped(-1.0, 1.0)),
-            Sqrt | Ln | Log2 | Log10 | Log1p | Asin | Acos | Acosh | Atanh => Vec::new(),
+            Sqrt | Rsqrt | Ln | Log2 | Log10 | Log1p | Log2p1 | Log10p1 | Asin | Acos | Acosh | Atanh => Vec::new(),
             // x^y is exp(y ln x), which is linear in y and in ln x.
             Pow if a.1 > 0.0 => vec![vec![(a.0.max(0.0), a.1), ranges[1]]],
             // 0^y = 0 for y > 0.
@@ -176,6 +187,7 @@ impl Operation {
                 let a = if q % 2 == 0 { (a.0.max(0.0), a.1) } else { a };
                 unary(if p < 0 { without_zero(a) } else { halves(a) })
             }
+            Rootn(n) => root(n).pieces(x),
             _ => vec![ranges],
         }
     }
@@ -214,9 +226,13 @@ impl Operation {
         let mut widen = |(down, up): Range| hull = (hull.0.min(down), hull.1.max(up));
         for piece in self.pieces(x) {
             for corner in 0..1 << piece.len() {
-                let args: Vec<f64> =
-                    piece.iter().enumerate().map(|(i, part)| if corner >> i & 1 == 0 { part.0 } else { part.1 }).collect();
-                let removed = matches!(self, Atan2 | Modulo) && args.iter().all(|x| x.is_finite()) && !self.is_defined(&args);
+                let args: Vec<f64> = piece
+                    .iter()
+                    .enumerate()
+                    .map(|(i, part)| if corner >> i & 1 == 0 { part.0 } else { part.1 })
+                    .collect();
+                let removed =
+                    matches!(self, Atan2 | Modulo) && args.iter().all(|x| x.is_finite()) && !self.is_defined(&args);
                 if !removed && let Some(bracket) = oracle.bracket(self, &args) {
                     widen(bracket);
                 }
@@ -234,14 +250,14 @@ impl Operation {
         let sign = if rng.bool() { 1.0 } else { -1.0 };
         let x = match self {
             Exp | Expm1 | Sinh | Cosh => (rng.f64() - 0.5) * 1500.0,
-            Exp2 => (rng.f64() - 0.5) * 2200.0,
-            Exp10 => (rng.f64() - 0.5) * 660.0,
+            Exp2 | Exp2m1 => (rng.f64() - 0.5) * 2200.0,
+            Exp10 | Exp10m1 => (rng.f64() - 0.5) * 660.0,
             Tanh => (rng.f64() - 0.5) * 80.0,
-            Ln | Log2 | Log10 | Sqrt => number(rng).abs(),
+            Ln | Log2 | Log10 | Sqrt | Rsqrt => number(rng).abs(),
             Pow if i == 0 => number(rng).abs(),
             // So that the power stays in range: y about as large as 700 / |ln x| for common x.
             Pow => (rng.f64() - 0.5) * 2f64.powi(rng.i32(-4..11)),
-            Log1p => 2f64.powi(rng.i32(-60..60)) * (rng.f64() + 1.0) - rng.f64(),
+            Log1p | Log2p1 | Log10p1 => 2f64.powi(rng.i32(-60..60)) * (rng.f64() + 1.0) - rng.f64(),
             Asin | Acos | Atanh => {
                 sign * if rng.bool() { 1.0 - rng.f64() * 2f64.powi(rng.i32(-52..1)) } else { rng.f64() }
             }
@@ -277,6 +293,53 @@ impl Operation {
         (0..self.arity()).map(one).collect()
     }
 }
+
+/// The n-th root as a power.
+pub fn root(n: i32) -> Operation {
+    PowRatio(n.signum(), n.unsigned_abs())
+}
+
+/// An operation that asks for an argument: which members of a box have their values in a set.
+pub struct Reverse {
+    pub name: &'static str,
+    forward: Operation,
+    /// The place of the argument asked for; the other one, if there is one, is known.
+    unknown: usize,
+    /// On the box of the known argument, on the set of values and on the box of the argument asked for.
+    apply: fn(Interval, Interval, Interval) -> Interval,
+}
+
+pub const REVERSE: &[Reverse] = &[
+    Reverse { name: "SqrRev", forward: Sqr, unknown: 0, apply: |_, c, x| c.sqr_rev(x) },
+    Reverse { name: "AbsRev", forward: Abs, unknown: 0, apply: |_, c, x| c.abs_rev(x) },
+    Reverse { name: "SinRev", forward: Sin, unknown: 0, apply: |_, c, x| c.sin_rev(x) },
+    Reverse { name: "CosRev", forward: Cos, unknown: 0, apply: |_, c, x| c.cos_rev(x) },
+    Reverse { name: "TanRev", forward: Tan, unknown: 0, apply: |_, c, x| c.tan_rev(x) },
+    Reverse { name: "CoshRev", forward: Cosh, unknown: 0, apply: |_, c, x| c.cosh_rev(x) },
+    Reverse { name: "PowIntRev(3)", forward: PowInt(3), unknown: 0, apply: |_, c, x| c.powi_rev(x, 3) },
+    Reverse { name: "PowIntRev(4)", forward: PowInt(4), unknown: 0, apply: |_, c, x| c.powi_rev(x, 4) },
+    Reverse { name: "PowIntRev(-2)", forward: PowInt(-2), unknown: 0, apply: |_, c, x| c.powi_rev(x, -2) },
+    Reverse { name: "PowIntRev(-1)", forward: PowInt(-1), unknown: 0, apply: |_, c, x| c.powi_rev(x, -1) },
+    Reverse {
+        name: "PowRatioRev(2, 3)",
+        forward: PowRatio(2, 3),
+        unknown: 0,
+        apply: |_, c, x| c.pow_rational_rev(x, 2, 3),
+    },
+    Reverse { name: "MulRev", forward: Mul, unknown: 1, apply: |b, c, x| b.mul_rev(c, x) },
+    Reverse {
+        name: "MulRevToPair",
+        forward: Mul,
+        unknown: 1,
+        apply: |b, c, x| {
+            b.mul_rev_to_pair(c).map(|part| part.intersect(x)).into_iter().fold(Interval::EMPTY, Interval::hull)
+        },
+    },
+    Reverse { name: "PowRev1", forward: Pow, unknown: 0, apply: |b, c, x| b.pow_rev1(c, x) },
+    Reverse { name: "PowRev2", forward: Pow, unknown: 1, apply: |a, c, x| a.pow_rev2(c, x) },
+    Reverse { name: "Atan2Rev1", forward: Atan2, unknown: 0, apply: |x, c, y| x.atan2_rev1(c, y) },
+    Reverse { name: "Atan2Rev2", forward: Atan2, unknown: 1, apply: |y, c, x| y.atan2_rev2(c, x) },
+];
 
 /// The range cut at 0.
 fn halves((lo, hi): Range) -> Vec<Range> {
@@ -321,12 +384,14 @@ fn number(rng: &mut Rng) -> f64 {
 fn member(rng: &mut Rng, x: Interval) -> f64 {
     let inside = |t: f64| t.clamp(x.lo().max(f64::MIN), x.hi().min(f64::MAX));
     let (lo, hi) = (inside(x.lo()), inside(x.hi()));
-    match rng.u32(0..6) {
+    let member = match rng.u32(0..6) {
         0 => lo,
         1 => hi,
         2 => inside(number(rng)),
         _ => inside(lo + (hi / 2.0 - lo / 2.0) * 2.0 * rng.f64()),
-    }
+    };
+    // Zeros without a sign, as real numbers have it.
+    member + 0.0
 }
 
 /// What the cases of one operation came to.
@@ -348,6 +413,14 @@ pub struct Tally {
 }
 
 impl Tally {
+    /// Runs cases in parallel, in chunks that have a seed of their own each: the arguments do not depend on the threads.
+    pub fn in_chunks(cases: u64, chunk: u64, work: impl Fn(u64, u64) -> Self + Sync) -> Self {
+        (0..cases.div_ceil(chunk))
+            .into_par_iter()
+            .map(|seed| work(seed, chunk.min(cases - seed * chunk)))
+            .reduce(Self::default, Self::merge)
+    }
+
     /// Runs seeded random cases.
     pub fn of(op: Operation, seed: u64, cases: u64, oracle: &mut impl Oracle) -> Self {
         let mut tally = Self { cases, ..Self::default() };
@@ -358,13 +431,39 @@ impl Tally {
         tally
     }
 
+    /// As [`Tally::of`]: the values are those of members of the boxes, so that the members must be found again.
+    pub fn of_reverse(op: &Reverse, seed: u64, cases: u64, oracle: &mut impl Oracle) -> Self {
+        let mut tally = Self { cases, ..Self::default() };
+        let mut rng = Rng::with_seed(seed);
+        for _ in 0..cases {
+            let x = op.forward.arguments(&mut rng);
+            let point: Vec<f64> = x.iter().map(|&x| member(&mut rng, x)).collect();
+            if !op.forward.is_defined(&point) {
+                continue;
+            }
+            let Some((down, up)) = oracle.bracket(op.forward, &point) else { continue };
+            let values = Interval::new(down, up).expect("a value between numbers");
+            let values = if rng.bool() { values } else { values.hull(Interval::point(number(&mut rng))) };
+            let (known, asked) = (x[x.len() - 1 - op.unknown], x[op.unknown]);
+            let found = (op.apply)(known, values, asked);
+            tally.members += 1;
+            if !found.contains(point[op.unknown]) || !asked.contains_interval(found) {
+                tally.escapes += 1;
+                tally.escape = Some(format!("{} of {x:?}, {values:?} is {found}, from {point:?}", op.name));
+            }
+        }
+        tally
+    }
+
     fn case(&mut self, op: Operation, x: &[Interval], rng: &mut Rng, oracle: &mut impl Oracle) {
         let y = op.apply(x);
         let escape = |what: &str| Some(format!("{op:?} of {x:?} is {y}, {what}"));
         let tightest = op.tightest(x, oracle);
         if tightest.is_none() || !x.iter().all(|x| x.is_singleton()) {
             let point: Vec<f64> = x.iter().map(|&x| member(rng, x)).collect();
-            if op.is_defined(&point) && let Some((down, up)) = oracle.bracket(op, &point) {
+            if op.is_defined(&point)
+                && let Some((down, up)) = oracle.bracket(op, &point)
+            {
                 self.members += 1;
                 // An end is a `f64`: it is at most the value if and only if it is at most the value rounded down.
                 if !(y.lo() <= down && up <= y.hi()) {
@@ -390,7 +489,7 @@ impl Tally {
         (self.lower, self.upper) = (self.lower.max(lower), self.upper.max(upper));
     }
 
-    pub fn merge(self, other: Self) -> Self {
+    fn merge(self, other: Self) -> Self {
         let wider = self.lower.max(self.upper) >= other.lower.max(other.upper);
         Self {
             cases: self.cases + other.cases,
@@ -405,18 +504,14 @@ impl Tally {
         }
     }
 
-    /// A row of the table below [`HEADER`].
-    pub fn row(&self, op: Operation) -> String {
-        let tight = 100.0 * self.tight as f64 / self.ends.max(1) as f64;
-        format!(
-            "| {:18} | {:8} | {:8} | {:7} | {:5} | {:5} | {tight:6.2} |",
-            format!("{op:?}"),
-            self.cases,
-            self.members,
-            self.escapes,
-            self.lower,
-            self.upper
-        )
+    /// A row of the table below [`HEADER`]; nothing about ends where the tightest ones are not known.
+    pub fn row(&self, name: &str) -> String {
+        let Self { cases, members, escapes, lower, upper, .. } = self;
+        if self.ends == 0 {
+            return format!("| {name:18} | {cases:8} | {members:8} | {escapes:7} |       |       |        |");
+        }
+        let tight = 100.0 * self.tight as f64 / self.ends as f64;
+        format!("| {name:18} | {cases:8} | {members:8} | {escapes:7} | {lower:5} | {upper:5} | {tight:6.2} |")
     }
 }
 
@@ -427,7 +522,7 @@ pub const HEADER: &str = "\
 /// How many steps from one number to the next lead from `a` up to `b`; 0 if `a` is above `b`.
 fn neighbours(a: f64, b: f64) -> u64 {
     let rank = |x: f64| {
-        let magnitude = (x.to_bits() & (u64::MAX >> 1)) as i64;
+        let magnitude = i128::from(x.to_bits() & (u64::MAX >> 1));
         if x.is_sign_negative() { -magnitude } else { magnitude }
     };
     u64::try_from(rank(b) - rank(a)).unwrap_or(0)

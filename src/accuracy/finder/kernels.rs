@@ -49,10 +49,6 @@ pub struct Reach {
 }
 
 impl Reach {
-    pub fn rounding(&self) -> Rounding {
-        self.rounding
-    }
-
     /// `None` if no ray meets the domain.
     pub fn new(rays: &[Option<Ray>], scene: &Scene, settings: &Settings) -> Option<Self> {
         let met: Vec<(&Ray, f64)> =
@@ -158,8 +154,14 @@ impl<T: Format> Programs<T> {
         };
         let orders = Orders { scene, shape, reach, settings };
         let finder = settings.finder;
-        let slope =
-            matches!(finder, Finder::Mitchell | Finder::IntervalNewton | Finder::AlefeldHansen | Finder::MrfNewton);
+        let slope = matches!(
+            finder,
+            Finder::Mitchell
+                | Finder::IntervalNewton
+                | Finder::AlefeldHansen
+                | Finder::MrfNewton
+                | Finder::PacketMitchell
+        );
         let point = slope || matches!(finder, Finder::Mrf | Finder::MrfRo);
         Ok(Self {
             field: make(orders.field())?,
@@ -284,6 +286,23 @@ impl Lanes<'_> {
         match self.reach.rounding {
             Rounding::Outward => batch.set_range(lane, input, lo, hi),
             Rounding::Nearest => batch.set_box(lane, input, T::nearest(-lo), T::nearest(hi)),
+        }
+    }
+
+    /// Writes the box of coordinates that a ray crosses during a span.
+    pub fn set_boxes<T: Real>(&self, batch: &mut Batch<T>, lane: usize, ray: &Ray, [start, end]: Span) {
+        for axis in 0..3 {
+            let (o, d) = (ray.origin[axis], ray.direction[axis]);
+            let (a, b) = (o + start * d, o + end * d);
+            // Each is rounded twice, by half a unit in the last place of the product and of the sum.
+            let margin = match self.reach.rounding {
+                Rounding::Outward => {
+                    let product = (d * start).abs().max((d * end).abs());
+                    f64::EPSILON * (a.abs().max(b.abs()) + product) + f64::MIN_POSITIVE
+                }
+                Rounding::Nearest => 0.0,
+            };
+            self.set_range(batch, lane, axis, [a.min(b) - margin, a.max(b) + margin]);
         }
     }
 

@@ -19,9 +19,13 @@ use rayon::iter::IntoParallelIterator;
 use rayon::iter::ParallelIterator;
 
 use crate::accuracy::finder::drive::Driver;
+use crate::accuracy::finder::kernels::Lanes;
 use crate::accuracy::finder::kernels::Programs;
 use crate::accuracy::finder::kernels::Reach;
+use crate::accuracy::finder::packet::Packet;
+use crate::accuracy::finder::packet::SIDE;
 use crate::accuracy::finder::search::Rules;
+use crate::accuracy::finder::search::Search;
 use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
@@ -32,6 +36,8 @@ use crate::program::scene::Scene;
 use crate::program::scene::ShapeKind;
 use crate::render::Format;
 use crate::render::Ray;
+
+pub use crate::accuracy::finder::drive::Evaluations;
 
 /// Rows of pixels that one worker takes at a time; even, so that packets of 2x2 rays lie in one band.
 const BAND: u32 = 16;
@@ -53,6 +59,8 @@ pub enum Finder {
     MrfRo,
     /// The same, with the interval Newton operator.
     MrfNewton,
+    /// Mitchell's method for 2x2 rays in lockstep.
+    PacketMitchell,
     /// Bisection of t for 2x2 rays in lockstep.
     TMarch,
     /// Bisection of the dominant axis for 2x2 rays in lockstep.
@@ -60,7 +68,7 @@ pub enum Finder {
 }
 
 impl Finder {
-    pub const ALL: [Finder; 9] = [
+    pub const ALL: [Finder; 10] = [
         Finder::Bisection,
         Finder::Mitchell,
         Finder::IntervalNewton,
@@ -68,6 +76,7 @@ impl Finder {
         Finder::Mrf,
         Finder::MrfRo,
         Finder::MrfNewton,
+        Finder::PacketMitchell,
         Finder::TMarch,
         Finder::KMarch,
     ];
@@ -82,6 +91,7 @@ impl Finder {
             Finder::Mrf => "MRF",
             Finder::MrfRo => "MRFro",
             Finder::MrfNewton => "MRFro+Newton",
+            Finder::PacketMitchell => "Mitchell 2x2",
             Finder::TMarch => "t-march",
             Finder::KMarch => "K-march",
         }
@@ -96,9 +106,14 @@ impl Finder {
             Finder::AlefeldHansen => "Capriani et al. 2000; Flórez 2008, fig. 4.8 and eq. 4.2",
             Finder::Mrf | Finder::MrfRo => "Sanjuan-Estrada et al. 2003; Flórez 2008, section 4.3.3",
             Finder::MrfNewton => "Flórez 2008, section 4.3.4",
-            Finder::TMarch => "Knoll et al. 2007, section 6.5",
+            Finder::PacketMitchell | Finder::TMarch => "Knoll et al. 2007, section 6.5",
             Finder::KMarch => "Knoll et al. 2007, section 5.3 and Alg. 2",
         }
+    }
+
+    /// Whether rays are searched 2x2 at a time, in lockstep.
+    fn is_packet(self) -> bool {
+        matches!(self, Finder::PacketMitchell | Finder::TMarch | Finder::KMarch)
     }
 
     /// Whether the method finds where a ray enters a solid, too: the others look for changes of sign, of which the
@@ -133,6 +148,8 @@ pub struct Sampled {
     pub unknown: Vec<bool>,
     /// Lanes evaluated: intervals, points and slopes alike, idle lanes of a packet in lockstep included.
     pub evaluations: u64,
+    /// The same by what was asked.
+    pub by_kind: Evaluations,
     /// Wall clock of the search, without compilation and without the proofs.
     pub seconds: f64,
 }
@@ -230,20 +247,16 @@ fn run<T: Format>(
             condition: shape.condition.is_some(),
         };
         let start = Instant::now();
-        let chunk = (BAND * size.0) as usize;
-        let bands: Vec<(Vec<Found>, u64)> = rays
-            .chunks(chunk)
+        let bands: Vec<(Vec<Found>, Evaluations)> = rays
+            .chunks((BAND * size.0) as usize)
             .collect::<Vec<_>>()
             .into_par_iter()
-            .map(|rays| match settings.finder {
-                Finder::TMarch | Finder::KMarch => {
-                    packet::march(&programs, &reach, rules, rays, size.0, scene, settings.epsilon)
-                }
-                _ => Driver::new(&programs, &reach, rules).run(rays, &scene.domain, settings.epsilon),
-            })
+            .map(|band| search(scene, &programs, &reach, rules, (band, size.0), settings.epsilon))
             .collect();
         sampled.seconds += start.elapsed().as_secs_f64();
-        sampled.evaluations += bands.iter().map(|(_, evaluations)| evaluations).sum::<u64>();
+        for &(_, counts) in &bands {
+            sampled.by_kind += counts;
+        }
         let mut place = 0;
         for (mut band, _) in bands {
             let rays = &rays[place..place + band.len()];
@@ -259,8 +272,37 @@ fn run<T: Format>(
     Ok(finish(found, settings, sampled))
 }
 
+/// What is found along each of a band of rays, given with the length of its rows, and the number of evaluations.
+fn search<T: Format>(
+    scene: &Scene,
+    programs: &Programs<T>,
+    reach: &Reach,
+    rules: Rules,
+    (rays, width): (&[Option<Ray>], u32),
+    epsilon: f64,
+) -> (Vec<Found>, Evaluations) {
+    let mut found = vec![Found::MISS; rays.len()];
+    let driver = Driver::new(programs, Lanes { reach, condition: rules.condition });
+    let evaluations = if rules.finder.is_packet() {
+        let (width, height) = (width as usize, rays.len() / width as usize);
+        let corners = (0..height).step_by(SIDE).flat_map(|y| (0..width).step_by(SIDE).map(move |x| (x, y)));
+        let packets = corners.filter_map(|(x, y)| {
+            let places = (y..height.min(y + SIDE)).flat_map(|y| (x..width.min(x + SIDE)).map(move |x| y * width + x));
+            let members: Vec<(usize, Ray)> = places.filter_map(|pixel| Some((pixel, rays[pixel]?))).collect();
+            Packet::new(rules, &members, scene, epsilon)
+        });
+        driver.run(packets, &mut found)
+    } else {
+        let searches = rays.iter().enumerate();
+        let searches = searches.filter_map(|(pixel, ray)| Search::new(rules, pixel, (*ray)?, &scene.domain, epsilon));
+        driver.run(searches, &mut found)
+    };
+    (found, evaluations)
+}
+
 fn finish(found: Vec<Found>, settings: &Settings, mut sampled: Sampled) -> Sampled {
     let outward = settings.rounding == Rounding::Outward;
+    sampled.evaluations = sampled.by_kind.fields + sampled.by_kind.slopes + sampled.by_kind.points;
     sampled.depth = found.iter().map(|f| f.hit).collect();
     sampled.proved = found.iter().map(|f| outward && f.proved).collect();
     sampled.unknown = found.iter().map(|f| !outward || !(f.proved || f.hit.is_none() && f.clear)).collect();

@@ -1,69 +1,91 @@
-//! The marches of Knoll, Hijazi et al. 2007: 2x2 rays halve the same stretch in lockstep, and go on to the next part of it
+//! The packets of Knoll, Hijazi et al. 2007: 2x2 rays halve the same stretch in lockstep, and go on to the next part of it
 //! when no ray of the packet has 0 in its enclosure.
 //!
 //! The t-march divides each ray's own stretch inside the domain and encloses the field along the ray. The K-march divides
 //! the domain along the axis K that dominates the packet's first ray, so that all rays stay in the same slab, and encloses
-//! the field over the boxes X x Y x Z that the rays cross there. Against the printed listing (Knoll et al., Alg. 2): a box
-//! over which the field is unbounded is divided like any other and refused as a hit at the last level, lane by lane; rays
-//! that have hit are not asked any more; the finest slab is no longer than the epsilon asked for; boxes are computed from
-//! the slab's place rather than by adding steps, which would drift.
+//! the field over the boxes X x Y x Z that the rays cross there. Mitchell's method in packets divides like the t-march
+//! until the slope excludes 0 for every ray that is still open, then bisects by the signs of points.
+//!
+//! Against the printed listing (Knoll et al., Alg. 2): a box over which the field is unbounded is divided like any other
+//! and refused as a hit at the last level, ray by ray; rays that have hit are not asked any more; the finest slab is no
+//! longer than the epsilon asked for; places are computed from the slab's number rather than by adding steps, which
+//! would drift.
 
 use crate::accuracy::finder::Finder;
 use crate::accuracy::finder::Found;
+use crate::accuracy::finder::drive::Pursuit;
 use crate::accuracy::finder::drive::length;
-use crate::accuracy::finder::kernels::Lanes;
-use crate::accuracy::finder::kernels::Programs;
-use crate::accuracy::finder::kernels::Reach;
 use crate::accuracy::finder::search::Answer;
+use crate::accuracy::finder::search::Kind;
+use crate::accuracy::finder::search::Probe;
+use crate::accuracy::finder::search::Question;
+use crate::accuracy::finder::search::Refinement;
 use crate::accuracy::finder::search::Rules;
 use crate::accuracy::finder::search::Span;
-use crate::derive::Rounding;
-use crate::kernel::Real;
 use crate::program::scene::Scene;
-use crate::render::Batch;
 use crate::render::Ray;
 
 /// Rays of a packet: 2 across, 2 down.
-const SIDE: usize = 2;
-const RAYS: usize = SIDE * SIDE;
-/// Packets of a batch.
-const GROUPS: usize = 16;
+pub const SIDE: usize = 2;
+pub const RAYS: usize = SIDE * SIDE;
 /// Deepest level: its slabs are exact fractions of the whole.
 const DEEPEST: u32 = 50;
 
 /// One ray of a packet.
 #[derive(Debug, Clone, Copy)]
 struct Member {
-    pixel: usize,
+    /// `None` for a ray that only fills the packet.
+    pixel: Option<usize>,
     ray: Ray,
     /// The stretch of the ray inside the domain.
     inside: Span,
     /// The stretch that is divided.
     whole: Span,
+    /// Brackets that are not divided any more.
+    width: f64,
     found: Found,
     /// Neither hit nor beyond its exit.
     active: bool,
+    /// The current slab is not ruled out.
+    open: bool,
+    /// The sign of the slope in the current slab.
+    growth: i8,
+    refinement: Option<Refinement>,
+    /// The point or the bracket that is asked for.
+    asked: Span,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    March,
+    Slope,
+    /// The field at the start or the end of the slab.
+    End(usize),
+    Refine,
+    Confirm,
 }
 
 /// Rays in lockstep: slab `k` of 2^depth.
-struct Packet {
-    members: Vec<Member>,
+pub struct Packet {
+    rules: Rules,
+    members: [Member; RAYS],
     depth: u32,
     k: u64,
     deepest: u32,
+    phase: Phase,
 }
 
 impl Packet {
-    fn new(finder: Finder, rays: &[(usize, Ray)], scene: &Scene, epsilon: f64) -> Option<Self> {
+    /// The packet of some rays, up to four, with its first question; `None` if none of them meets the domain.
+    pub fn new(rules: Rules, rays: &[(usize, Ray)], scene: &Scene, epsilon: f64) -> Option<(Self, Question<RAYS>)> {
         let axis = rays.first().map(|(_, ray)| dominant(ray))?;
         let mut members = Vec::with_capacity(RAYS);
-        let mut longest = 0.0f64;
         for &(pixel, ray) in rays {
             let Some((entry, exit)) = ray.clip(&scene.domain) else { continue };
             let inside = [entry[0], exit[1]];
             let (o, d) = (ray.origin[axis], ray.direction[axis]);
             // A ray that runs across the packet's axis has no slabs of its own.
-            let whole = if finder == Finder::KMarch && d != 0.0 {
+            let whole = if rules.finder == Finder::KMarch && d != 0.0 {
                 let range = scene.domain[axis];
                 let ends = [(range.lo() - o) / d, (range.hi() - o) / d];
                 // The planes of the domain, unless rounding has carried them into it.
@@ -71,14 +93,47 @@ impl Packet {
             } else {
                 inside
             };
-            longest = longest.max((whole[1] - whole[0]) * length(&ray));
-            members.push(Member { pixel, ray, inside, whole, found: Found::MISS, active: true });
+            members.push(Member {
+                pixel: Some(pixel),
+                ray,
+                inside,
+                whole,
+                width: epsilon / length(&ray),
+                found: Found::MISS,
+                active: true,
+                open: false,
+                growth: 0,
+                refinement: None,
+                asked: inside,
+            });
         }
-        if members.is_empty() {
-            return None;
-        }
+        let longest = members.iter().map(|member| (member.whole[1] - member.whole[0]) * length(&member.ray));
+        let longest = longest.fold(0.0, f64::max);
         let deepest = (longest / epsilon).log2().ceil().clamp(0.0, f64::from(DEEPEST)) as u32;
-        Some(Self { members, depth: 0, k: 0, deepest })
+        let filling = Member { pixel: None, active: false, ..*members.first()? };
+        let members = std::array::from_fn(|i| members.get(i).copied().unwrap_or(filling));
+        let mut packet = Self { rules, members, depth: 0, k: 0, deepest, phase: Phase::March };
+        let question = packet.ask(Phase::March);
+        Some((packet, question))
+    }
+
+    fn ask(&mut self, phase: Phase) -> Question<RAYS> {
+        self.phase = phase;
+        let kind = match phase {
+            Phase::March if self.rules.finder == Finder::KMarch => Kind::Boxes,
+            Phase::March | Phase::Confirm => Kind::Field,
+            Phase::Slope => Kind::Slope,
+            Phase::End(_) | Phase::Refine => Kind::Point,
+        };
+        let spans = std::array::from_fn(|i| {
+            let span = self.span(&self.members[i]);
+            match phase {
+                Phase::March | Phase::Slope => span,
+                Phase::End(end) => [span[end]; 2],
+                Phase::Refine | Phase::Confirm => self.members[i].asked,
+            }
+        });
+        Question { kind, spans }
     }
 
     /// The part of a ray in the current slab. Neighbouring slabs share their ends, since the same numbers make them.
@@ -98,8 +153,16 @@ impl Packet {
         member.active && end >= member.inside[0] && start <= member.inside[1]
     }
 
-    /// Goes on to the next slab in which a ray takes part; `false` if there is none.
-    fn advance(&mut self) -> bool {
+    fn anyone_takes_part(&self) -> bool {
+        self.members.iter().any(|member| self.takes_part(member))
+    }
+
+    /// Goes on to the next slab in which a ray takes part; `None` if there is none.
+    fn pass(&mut self) -> Option<Question<RAYS>> {
+        for i in 0..RAYS {
+            let [_, end] = self.span(&self.members[i]);
+            self.members[i].active &= end <= self.members[i].inside[1];
+        }
         loop {
             self.k += 1;
             while self.depth > 0 && self.k.is_multiple_of(2) {
@@ -107,40 +170,138 @@ impl Packet {
                 self.depth -= 1;
             }
             if self.k >> self.depth != 0 || self.members.iter().all(|member| !member.active) {
-                return false;
+                return None;
             }
-            if self.members.iter().any(|member| self.takes_part(member)) {
-                return true;
+            if self.anyone_takes_part() {
+                return Some(self.ask(Phase::March));
             }
         }
     }
 
-    /// Takes one answer a ray; whether the packet goes on.
-    fn answer(&mut self, rules: Rules, answers: &[Answer]) -> bool {
-        let open = |packet: &Self, i: usize| packet.takes_part(&packet.members[i]) && !rules.excludes(&answers[i]);
-        let any = (0..self.members.len()).any(|i| open(self, i));
-        if any && self.depth < self.deepest {
-            self.depth += 1;
-            self.k *= 2;
-            // The nearer half may lie before the entry of every ray.
-            return self.members.iter().any(|member| self.takes_part(member)) || self.advance();
+    /// Halves the slab.
+    fn descend(&mut self) -> Option<Question<RAYS>> {
+        self.depth += 1;
+        self.k *= 2;
+        // The nearer half may lie before the entry of every ray.
+        if self.anyone_takes_part() { Some(self.ask(Phase::March)) } else { self.pass() }
+    }
+
+    fn march(&mut self, answers: &[Answer; RAYS]) -> Option<Question<RAYS>> {
+        for (i, answer) in answers.iter().enumerate() {
+            self.members[i].open = self.takes_part(&self.members[i]) && !self.rules.excludes(answer);
         }
-        for i in 0..self.members.len() {
+        if self.members.iter().all(|member| !member.open) {
+            return self.pass();
+        }
+        if self.depth < self.deepest {
+            return match self.rules.finder {
+                Finder::PacketMitchell => Some(self.ask(Phase::Slope)),
+                _ => self.descend(),
+            };
+        }
+        for (i, answer) in answers.iter().enumerate() {
+            let member = &self.members[i];
+            if member.open {
+                let ([start, end], inside) = (self.span(member), member.inside);
+                self.register(i, [start.max(inside[0]), end.min(inside[1])], answer);
+            }
+        }
+        self.pass()
+    }
+
+    /// A hit, unless the field is unbounded there.
+    fn register(&mut self, i: usize, bracket: Span, answer: &Answer) {
+        let member = &mut self.members[i];
+        if self.rules.accepts(answer) {
+            member.found.hit = Some(bracket);
+            member.active = false;
+        } else {
+            member.found.clear = false;
+        }
+    }
+
+    fn slope(&mut self, answers: &[Answer; RAYS]) -> Option<Question<RAYS>> {
+        for (member, answer) in self.members.iter_mut().zip(answers) {
+            member.growth = if answer.continuous { answer.sign() } else { 0 };
+        }
+        if self.members.iter().any(|member| member.open && member.growth == 0) {
+            return self.descend();
+        }
+        Some(self.ask(Phase::End(0)))
+    }
+
+    fn end(&mut self, end: usize, answers: &[Answer; RAYS]) -> Option<Question<RAYS>> {
+        for (member, answer) in self.members.iter_mut().zip(answers) {
+            // Moving away from 0 at the start, or not yet there at the end, a monotone field has no zero between.
+            let sign = answer.sign();
+            member.open &= sign == 0 || (end == 0) != (sign == member.growth);
+        }
+        if self.members.iter().all(|member| !member.open) {
+            return self.pass();
+        }
+        if end == 0 {
+            return Some(self.ask(Phase::End(1)));
+        }
+        for i in 0..RAYS {
             let span = self.span(&self.members[i]);
-            if any && open(self, i) {
-                let member = &mut self.members[i];
-                if rules.accepts(&answers[i]) {
-                    let [start, end] = member.inside;
-                    member.found.hit = Some([span[0].max(start), span[1].min(end)]);
-                    member.active = false;
-                } else {
-                    member.found.clear = false;
+            let member = &mut self.members[i];
+            member.refinement = member.open.then(|| Refinement::new(member.growth, span));
+        }
+        Some(self.probe())
+    }
+
+    /// The next points of all brackets, or the brackets themselves when each is narrow enough.
+    fn probe(&mut self) -> Question<RAYS> {
+        for member in &mut self.members {
+            let Some(refinement) = &member.refinement else { continue };
+            match refinement.probe(member.width) {
+                Probe::At(t) => member.asked = [t, t],
+                Probe::Done(bracket) => {
+                    member.asked = bracket;
+                    member.refinement = None;
                 }
             }
-            let member = &mut self.members[i];
-            member.active &= span[1] <= member.inside[1];
         }
-        self.advance()
+        let done = self.members.iter().all(|member| member.refinement.is_none());
+        self.ask(if done { Phase::Confirm } else { Phase::Refine })
+    }
+}
+
+impl Pursuit<RAYS> for Packet {
+    fn rays(&self) -> [Ray; RAYS] {
+        self.members.map(|member| member.ray)
+    }
+
+    fn answer(&mut self, answers: &[Answer; RAYS]) -> Option<Question<RAYS>> {
+        match self.phase {
+            Phase::March => self.march(answers),
+            Phase::Slope => self.slope(answers),
+            Phase::End(end) => self.end(end, answers),
+            Phase::Refine => {
+                for (member, answer) in self.members.iter_mut().zip(answers) {
+                    if let Some(refinement) = &mut member.refinement {
+                        refinement.take(member.asked[0], answer.sign());
+                    }
+                }
+                Some(self.probe())
+            }
+            Phase::Confirm => {
+                for (i, answer) in answers.iter().enumerate() {
+                    if self.members[i].open && !self.rules.excludes(answer) {
+                        self.register(i, self.members[i].asked, answer);
+                    }
+                }
+                self.pass()
+            }
+        }
+    }
+
+    fn report(&self, found: &mut [Found]) {
+        for member in &self.members {
+            if let Some(pixel) = member.pixel {
+                found[pixel] = member.found;
+            }
+        }
     }
 }
 
@@ -148,92 +309,4 @@ impl Packet {
 fn dominant(ray: &Ray) -> usize {
     let speed = ray.direction.map(f64::abs);
     (0..3).fold(0, |best, axis| if speed[axis] > speed[best] { axis } else { best })
-}
-
-/// What is found along each of a band of rays, `width` of them a row, and the number of evaluations.
-pub fn march<T: Real>(
-    programs: &Programs<T>,
-    reach: &Reach,
-    rules: Rules,
-    rays: &[Option<Ray>],
-    width: u32,
-    scene: &Scene,
-    epsilon: f64,
-) -> (Vec<Found>, u64) {
-    let mut found = vec![Found::MISS; rays.len()];
-    let lanes = Lanes { reach, condition: rules.condition };
-    let boxes = programs.boxes.as_ref();
-    let mut batch = Batch::new(boxes.unwrap_or(&programs.field), GROUPS);
-    let slots = batch.capacity() / RAYS;
-    let (width, height) = (width as usize, rays.len() / width as usize);
-    let corners = (0..height).step_by(SIDE).flat_map(|y| (0..width).step_by(SIDE).map(move |x| (x, y)));
-    let mut starting = corners.filter_map(|(x, y)| {
-        let places = (y..height.min(y + SIDE)).flat_map(|y| (x..width.min(x + SIDE)).map(move |x| y * width + x));
-        let members: Vec<(usize, Ray)> = places.filter_map(|pixel| Some((pixel, rays[pixel]?))).collect();
-        Packet::new(rules.finder, &members, scene, epsilon)
-    });
-    let mut packets: Vec<Packet> = Vec::with_capacity(slots);
-    let mut evaluations = 0;
-    let mut answers = Vec::with_capacity(RAYS);
-    loop {
-        while packets.len() < slots {
-            let Some(packet) = starting.next() else { break };
-            if boxes.is_none() {
-                set_rays(&mut batch, &lanes, packets.len(), &packet);
-            }
-            packets.push(packet);
-        }
-        if packets.is_empty() {
-            break;
-        }
-        for (place, packet) in packets.iter().enumerate() {
-            evaluations += packet.members.len() as u64;
-            for (i, member) in packet.members.iter().enumerate() {
-                let (lane, span) = (RAYS * place + i, packet.span(member));
-                if boxes.is_none() {
-                    lanes.set_span(&mut batch, lane, span);
-                } else {
-                    for axis in 0..3 {
-                        lanes.set_range(&mut batch, lane, axis, extent(&member.ray, axis, span, reach.rounding()));
-                    }
-                }
-            }
-        }
-        batch.run(RAYS * packets.len());
-        for place in (0..packets.len()).rev() {
-            let packet = &mut packets[place];
-            answers.clear();
-            answers.extend((0..packet.members.len()).map(|i| lanes.field(&batch, RAYS * place + i)));
-            if !packet.answer(rules, &answers) {
-                let done = packets.swap_remove(place);
-                for member in done.members {
-                    found[member.pixel] = member.found;
-                }
-                if boxes.is_none() && place < packets.len() {
-                    set_rays(&mut batch, &lanes, place, &packets[place]);
-                }
-            }
-        }
-    }
-    (found, evaluations)
-}
-
-fn set_rays<T: Real>(batch: &mut Batch<T>, lanes: &Lanes<'_>, place: usize, packet: &Packet) {
-    for (i, member) in packet.members.iter().enumerate() {
-        lanes.set_ray(batch, RAYS * place + i, &member.ray);
-    }
-}
-
-/// Where a coordinate of a ray is during a span.
-fn extent(ray: &Ray, axis: usize, [start, end]: Span, rounding: Rounding) -> Span {
-    let (o, d) = (ray.origin[axis], ray.direction[axis]);
-    let (a, b) = (o + start * d, o + end * d);
-    // Each is rounded twice, by half a unit in the last place of the product and of the sum.
-    let margin = match rounding {
-        Rounding::Outward => {
-            f64::EPSILON * (a.abs().max(b.abs()) + (d * start).abs().max((d * end).abs())) + f64::MIN_POSITIVE
-        }
-        Rounding::Nearest => 0.0,
-    };
-    [a.min(b) - margin, a.max(b) + margin]
 }

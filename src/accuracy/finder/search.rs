@@ -17,21 +17,34 @@
 //! unless the nearer one was empty after all, so there is nothing to reject here.
 
 use crate::accuracy::finder::Finder;
+use crate::accuracy::finder::Found;
+use crate::accuracy::finder::drive::Pursuit;
+use crate::accuracy::finder::drive::length;
 use crate::interval::Interval;
 use crate::kernel::verdict;
+use crate::render::Ray;
 
 /// An interval of the ray parameter.
 pub type Span = [f64; 2];
 
 /// What a search wants to know.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Question {
-    /// The field over an interval.
-    Field(Span),
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The field over an interval of the ray.
+    Field,
     /// The slope along the ray over an interval.
-    Slope(Span),
-    /// The field at a point.
-    Point(f64),
+    Slope,
+    /// The field at a point of the ray.
+    Point,
+    /// The field over the box of coordinates that a ray crosses during an interval.
+    Boxes,
+}
+
+/// A question about `N` rays: an interval each, or a point as an interval of no width.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Question<const N: usize> {
+    pub kind: Kind,
+    pub spans: [Span; N],
 }
 
 /// What a kernel says.
@@ -120,17 +133,55 @@ enum State {
 
 /// A bracket of the one zero of a monotone field, found by signs.
 #[derive(Debug, Clone, Copy)]
-struct Refinement {
+pub struct Refinement {
     growth: i8,
     span: Span,
     /// Points between which the sign stayed open.
     open: Option<Span>,
 }
 
+/// What a refinement needs next.
+pub enum Probe {
+    /// The sign at this point.
+    At(f64),
+    /// Nothing: this is the bracket.
+    Done(Span),
+}
+
+impl Refinement {
+    /// The bracket of a zero in `span`, on which the field has slopes of the sign `growth`.
+    pub fn new(growth: i8, span: Span) -> Self {
+        Self { growth, span, open: None }
+    }
+
+    /// The next point of a bracket, or the bracket itself if it is narrow or rounding does not let it shrink.
+    pub fn probe(&self, width: f64) -> Probe {
+        let Self { span, open, .. } = *self;
+        let (gap, enough) = match open {
+            None => (span, width),
+            Some([a, b]) => (if a - span[0] > span[1] - b { [span[0], a] } else { [b, span[1]] }, 0.25 * width),
+        };
+        let narrow = span[1] - span[0] < width || gap[1] - gap[0] < enough;
+        if narrow { Probe::Done(span) } else { Probe::At(midpoint(gap)) }
+    }
+
+    /// Takes the sign at a point.
+    pub fn take(&mut self, t: f64, sign: i8) {
+        match sign {
+            0 => self.open = Some(self.open.map_or([t, t], |[a, b]| [a.min(t), b.max(t)])),
+            sign if sign == self.growth => self.span[1] = t,
+            _ => self.span[0] = t,
+        }
+        self.open = self.open.filter(|[a, b]| self.span[0] < *a && *b < self.span[1]);
+    }
+}
+
 /// The search along one ray.
 #[derive(Debug)]
 pub struct Search {
     rules: Rules,
+    pixel: usize,
+    ray: Ray,
     /// The stretch of the ray inside the domain.
     whole: Span,
     /// Intervals of the ray parameter that are not divided any more.
@@ -138,74 +189,55 @@ pub struct Search {
     stack: Vec<Item>,
     item: Item,
     state: State,
-    /// What was passed over is refuted.
-    pub clear: bool,
-    pub hit: Option<Span>,
+    found: Found,
 }
 
 impl Search {
-    /// A search of the part `whole` of a ray, with its first question.
-    pub fn new(rules: Rules, whole: Span, width: f64) -> (Self, Question) {
+    /// The search along the ray of a pixel, with its first question; `None` if the ray misses the domain.
+    pub fn new(rules: Rules, pixel: usize, ray: Ray, domain: &[Interval], epsilon: f64) -> Option<(Self, Question<1>)> {
+        let (entry, exit) = ray.clip(domain)?;
+        let whole = [entry[0], exit[1]];
         // Intervals of a few neighbouring numbers cannot be halved.
-        let width = width.max(whole[1] * 2.0f64.powi(-50)).max(f64::MIN_POSITIVE);
+        let width = (epsilon / length(&ray)).max(whole[1] * 2.0f64.powi(-50)).max(f64::MIN_POSITIVE);
         let item = Item { span: whole, signs: [None; 2] };
-        let mut search =
-            Self { rules, whole, width, stack: Vec::new(), item, state: State::Field, clear: true, hit: None };
+        let (stack, state, found) = (Vec::new(), State::Field, Found::MISS);
+        let mut search = Self { rules, pixel, ray, whole, width, stack, item, state, found };
         let question = search.open(item);
-        (search, question)
+        Some((search, question))
     }
 
-    /// Takes an answer; the next question, or `None` when the search has ended.
-    pub fn answer(&mut self, answer: &Answer) -> Option<Question> {
-        match self.state {
-            State::Field => self.field(answer),
-            State::Slope => self.slope(answer),
-            State::End(end) => {
-                self.item.signs[end] = Some(answer.sign());
-                Some(self.open(self.item))
-            }
-            State::Halves => self.halve(Some(answer.sign())),
-            State::Newton(slope) => self.newton(answer, slope),
-            State::Monotone(growth, end) => self.monotone(answer, growth, end),
-            State::Refine(refinement, t) => Some(self.refine(answer, refinement, t)),
-            State::Confirm(bracket) => {
-                if self.rules.excludes(answer) {
-                    self.next()
-                } else {
-                    self.claim(bracket, answer)
-                }
-            }
-        }
-    }
-
-    fn ask(&mut self, state: State, question: Question) -> Question {
+    fn ask(&mut self, state: State, kind: Kind, span: Span) -> Question<1> {
         self.state = state;
-        question
+        Question { kind, spans: [span] }
     }
 
-    fn ask_field(&mut self) -> Question {
-        self.ask(State::Field, Question::Field(self.item.span))
+    fn ask_point(&mut self, state: State, t: f64) -> Question<1> {
+        self.ask(state, Kind::Point, [t, t])
     }
 
-    fn confirm(&mut self, bracket: Span) -> Question {
-        self.ask(State::Confirm(bracket), Question::Field(bracket))
+    fn ask_field(&mut self) -> Question<1> {
+        self.ask(State::Field, Kind::Field, self.item.span)
+    }
+
+    fn confirm(&mut self, bracket: Span) -> Question<1> {
+        self.ask(State::Confirm(bracket), Kind::Field, bracket)
     }
 
     /// Goes on with the nearest interval that is left.
-    fn next(&mut self) -> Option<Question> {
+    fn next(&mut self) -> Option<Question<1>> {
         let item = self.stack.pop()?;
         Some(self.open(item))
     }
 
     /// The first question about an interval.
-    fn open(&mut self, item: Item) -> Question {
+    fn open(&mut self, item: Item) -> Question<1> {
         self.item = item;
         if !matches!(self.rules.finder, Finder::MrfRo | Finder::MrfNewton) {
             return self.ask_field();
         }
         match item.signs {
-            [None, _] => self.ask(State::End(0), Question::Point(item.span[0])),
-            [_, None] => self.ask(State::End(1), Question::Point(item.span[1])),
+            [None, _] => self.ask_point(State::End(0), item.span[0]),
+            [_, None] => self.ask_point(State::End(1), item.span[1]),
             [Some(a), Some(b)] if a * b > 0 => self.ask_field(),
             // Ends of different signs, or of open ones: the interval would not be refuted.
             _ if self.is_narrow() => self.confirm(item.span),
@@ -221,7 +253,7 @@ impl Search {
         midpoint(self.item.span)
     }
 
-    fn field(&mut self, answer: &Answer) -> Option<Question> {
+    fn field(&mut self, answer: &Answer) -> Option<Question<1>> {
         if self.rules.excludes(answer) {
             self.next()
         } else if self.is_narrow() {
@@ -234,31 +266,31 @@ impl Search {
     }
 
     /// The question that decides how an interval is divided.
-    fn divide(&mut self) -> Question {
+    fn divide(&mut self) -> Question<1> {
         match self.rules.finder {
-            Finder::Mrf | Finder::MrfRo => self.ask(State::Halves, Question::Point(self.middle())),
-            _ => self.ask(State::Slope, Question::Slope(self.item.span)),
+            Finder::Mrf | Finder::MrfRo => self.ask_point(State::Halves, self.middle()),
+            _ => self.ask(State::Slope, Kind::Slope, self.item.span),
         }
     }
 
-    fn slope(&mut self, answer: &Answer) -> Option<Question> {
+    fn slope(&mut self, answer: &Answer) -> Option<Question<1>> {
         let growth = if answer.continuous { answer.sign() } else { 0 };
         let (start, middle) = (self.item.span[0], self.middle());
         match self.rules.finder {
-            Finder::Mitchell if growth != 0 => Some(self.ask(State::Monotone(growth, 0), Question::Point(start))),
+            Finder::Mitchell if growth != 0 => Some(self.ask_point(State::Monotone(growth, 0), start)),
             Finder::AlefeldHansen if growth != 0 || answer.continuous => {
-                Some(self.ask(State::Newton(answer.interval()), Question::Point(middle)))
+                Some(self.ask_point(State::Newton(answer.interval()), middle))
             }
             Finder::IntervalNewton | Finder::MrfNewton if growth != 0 => {
-                Some(self.ask(State::Newton(answer.interval()), Question::Point(middle)))
+                Some(self.ask_point(State::Newton(answer.interval()), middle))
             }
-            Finder::MrfNewton => Some(self.ask(State::Halves, Question::Point(middle))),
+            Finder::MrfNewton => Some(self.ask_point(State::Halves, middle)),
             _ => self.halve(None),
         }
     }
 
     /// Searches the nearer half first.
-    fn halve(&mut self, sign: Option<i8>) -> Option<Question> {
+    fn halve(&mut self, sign: Option<i8>) -> Option<Question<1>> {
         let Item { span: [a, b], signs } = self.item;
         let middle = self.middle();
         self.stack.push(Item { span: [middle, b], signs: [sign, signs[1]] });
@@ -267,7 +299,7 @@ impl Search {
 
     /// The Newton operator m - f(m) / F' with the slope's enclosure F', by extended division where it holds 0 (Flórez 2008,
     /// eq. 4.2): what it leaves of the interval holds every zero.
-    fn newton(&mut self, answer: &Answer, slope: Interval) -> Option<Question> {
+    fn newton(&mut self, answer: &Answer, slope: Interval) -> Option<Question<1>> {
         let Item { span: [a, b], .. } = self.item;
         let (m, value) = (self.middle(), answer.interval());
         let whole = Interval::new(a, b).unwrap_or(Interval::ENTIRE);
@@ -299,57 +331,67 @@ impl Search {
         Some(self.open(item(near)))
     }
 
-    fn monotone(&mut self, answer: &Answer, growth: i8, end: usize) -> Option<Question> {
+    fn monotone(&mut self, answer: &Answer, growth: i8, end: usize) -> Option<Question<1>> {
         let sign = answer.sign();
         // Moving away from 0 at the start, or not yet there at the end, a monotone field has no zero between.
         if sign != 0 && (end == 0) == (sign == growth) {
             return self.next();
         }
         if end == 0 {
-            return Some(self.ask(State::Monotone(growth, 1), Question::Point(self.item.span[1])));
+            return Some(self.ask_point(State::Monotone(growth, 1), self.item.span[1]));
         }
-        Some(self.probe(Refinement { growth, span: self.item.span, open: None }))
+        Some(self.probe(Refinement::new(growth, self.item.span)))
     }
 
-    fn refine(&mut self, answer: &Answer, mut refinement: Refinement, t: f64) -> Question {
-        let Refinement { growth, span, open } = &mut refinement;
-        match answer.sign() {
-            0 => *open = Some(open.map_or([t, t], |[a, b]| [a.min(t), b.max(t)])),
-            sign if sign == *growth => span[1] = t,
-            _ => span[0] = t,
+    /// The next point of a bracket, or the bracket itself.
+    fn probe(&mut self, refinement: Refinement) -> Question<1> {
+        match refinement.probe(self.width) {
+            Probe::At(t) => self.ask_point(State::Refine(refinement, t), t),
+            Probe::Done(bracket) => self.confirm(bracket),
         }
-        *open = open.filter(|[a, b]| span[0] < *a && *b < span[1]);
-        self.probe(refinement)
-    }
-
-    /// The next point of a bracket, or the bracket itself if it is narrow or rounding does not let it shrink.
-    fn probe(&mut self, refinement: Refinement) -> Question {
-        let Refinement { span, open, .. } = refinement;
-        let t = match open {
-            _ if span[1] - span[0] < self.width => return self.confirm(span),
-            None => midpoint(span),
-            Some([a, b]) => {
-                let gap = if a - span[0] > span[1] - b { [span[0], a] } else { [b, span[1]] };
-                if gap[1] - gap[0] < 0.25 * self.width {
-                    return self.confirm(span);
-                }
-                midpoint(gap)
-            }
-        };
-        self.ask(State::Refine(refinement, t), Question::Point(t))
     }
 
     /// Ends the search at a bracket, unless the field is unbounded there.
-    fn claim(&mut self, bracket: Span, answer: &Answer) -> Option<Question> {
+    fn claim(&mut self, bracket: Span, answer: &Answer) -> Option<Question<1>> {
         if !self.rules.accepts(answer) {
-            self.clear = false;
+            self.found.clear = false;
             return self.next();
         }
         // The Newton operator's bracket may be narrower than any proof by signs can be.
         let missing = self.width - (bracket[1] - bracket[0]);
         let grow = if missing > 0.5 * self.width { 0.5 * missing } else { 0.0 };
-        self.hit = Some([(bracket[0] - grow).max(self.whole[0]), (bracket[1] + grow).min(self.whole[1])]);
+        self.found.hit = Some([(bracket[0] - grow).max(self.whole[0]), (bracket[1] + grow).min(self.whole[1])]);
         None
+    }
+}
+
+impl Pursuit<1> for Search {
+    fn rays(&self) -> [Ray; 1] {
+        [self.ray]
+    }
+
+    fn answer(&mut self, [answer]: &[Answer; 1]) -> Option<Question<1>> {
+        match self.state {
+            State::Field => self.field(answer),
+            State::Slope => self.slope(answer),
+            State::End(end) => {
+                self.item.signs[end] = Some(answer.sign());
+                Some(self.open(self.item))
+            }
+            State::Halves => self.halve(Some(answer.sign())),
+            State::Newton(slope) => self.newton(answer, slope),
+            State::Monotone(growth, end) => self.monotone(answer, growth, end),
+            State::Refine(mut refinement, t) => {
+                refinement.take(t, answer.sign());
+                Some(self.probe(refinement))
+            }
+            State::Confirm(_) if self.rules.excludes(answer) => self.next(),
+            State::Confirm(bracket) => self.claim(bracket, answer),
+        }
+    }
+
+    fn report(&self, found: &mut [Found]) {
+        found[self.pixel] = self.found;
     }
 }
 

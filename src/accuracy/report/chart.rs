@@ -57,8 +57,16 @@ pub struct Point {
     pub y: f64,
     /// Hollow points are those that prove nothing.
     pub filled: bool,
-    /// The label of a point on the Pareto front.
-    pub front: Option<String>,
+    pub front: Option<Front>,
+}
+
+/// A place on a Pareto front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Front {
+    /// An index into the chart's fronts.
+    pub front: usize,
+    /// Begins with the row's number.
+    pub label: String,
 }
 
 #[derive(Debug, Clone)]
@@ -76,6 +84,8 @@ pub struct Chart {
     pub x: String,
     pub y: String,
     pub series: Vec<Series>,
+    /// What each Pareto front is one of; at most two.
+    pub fronts: Vec<String>,
 }
 
 type Failure = Box<dyn Error>;
@@ -135,8 +145,13 @@ fn draw(area: &Area, chart: &Chart) -> Result<(), Failure> {
         .y_desc(&chart.y)
         .axis_desc_style((FONT, 13))
         .draw()?;
-    context.draw_series(LineSeries::new(staircase(chart, &x, &y), RGBColor(150, 150, 155).stroke_width(2)))?;
-    let mut boxes = Vec::new();
+    let mut boxes: Vec<Frame> = Vec::new();
+    for front in 0..chart.fronts.len() {
+        let steps = staircase(chart, front, &x, &y);
+        let corners: Vec<(i32, i32)> = steps.iter().map(|step| context.backend_coord(step)).collect();
+        boxes.extend(corners.windows(2).map(|ends| Frame::around(ends[0], ends[1], 2)));
+        context.draw_series(LineSeries::new(steps, line(front)))?;
+    }
     let mut labels = Vec::new();
     for series in &chart.series {
         let color = COLORS[series.color % COLORS.len()];
@@ -147,8 +162,8 @@ fn draw(area: &Area, chart: &Chart) -> Result<(), Failure> {
             if point.front.is_some() {
                 plot.draw(&Circle::new(relative(&plot, at), reach, BLACK.stroke_width(1)))?;
             }
-            boxes.push(Frame { left: at.0 - reach, top: at.1 - reach, right: at.0 + reach, bottom: at.1 + reach });
-            labels.extend(point.front.as_ref().map(|text| (at, text.as_str())));
+            boxes.push(Frame::around(at, at, reach));
+            labels.extend(point.front.as_ref().map(|front| (at, front.label.as_str())));
         }
     }
     write_labels(&plot, &context.plotting_area().get_pixel_range(), labels, boxes)?;
@@ -183,9 +198,15 @@ fn mark(area: &Area, at: (i32, i32), marker: Marker, color: RGBColor, filled: bo
     Ok(())
 }
 
-/// The boundary of what the front beats: from each of its points level to the next one's error.
-fn staircase(chart: &Chart, x: &Axis, y: &Axis) -> Vec<(f64, f64)> {
-    let on_front = chart.series.iter().flat_map(|series| &series.points).filter(|point| point.front.is_some());
+/// The line of a front.
+fn line(front: usize) -> ShapeStyle {
+    if front == 0 { RGBColor(130, 130, 135).stroke_width(2) } else { RGBColor(190, 170, 130).stroke_width(1) }
+}
+
+/// The boundary of what a front beats: from each of its points level to the next one's error.
+fn staircase(chart: &Chart, front: usize, x: &Axis, y: &Axis) -> Vec<(f64, f64)> {
+    let points = chart.series.iter().flat_map(|series| &series.points);
+    let on_front = points.filter(|point| point.front.as_ref().is_some_and(|place| place.front == front));
     let mut front: Vec<(f64, f64)> = on_front.map(|point| (x.place(point.x), y.place(point.y))).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
     let mut steps: Vec<(f64, f64)> = Vec::new();
@@ -208,6 +229,16 @@ struct Frame {
 }
 
 impl Frame {
+    /// The rectangle with these opposite corners, and a margin around it.
+    fn around(a: (i32, i32), b: (i32, i32), margin: i32) -> Self {
+        Self {
+            left: a.0.min(b.0) - margin,
+            top: a.1.min(b.1) - margin,
+            right: a.0.max(b.0) + margin,
+            bottom: a.1.max(b.1) + margin,
+        }
+    }
+
     fn meets(&self, other: &Frame) -> bool {
         self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
     }
@@ -225,8 +256,8 @@ fn write_labels(
     for (at, text) in labels {
         for text in [text.to_owned(), number(text)] {
             let (width, height) = ((text.chars().count() as f64 * LETTER_WIDTH) as i32, LETTERS as i32 + 2);
-            let rays = [(1, 0), (1, -1), (1, 1), (-1, 0), (-1, -1), (-1, 1), (0, -1), (0, 1)];
-            let places = [9, 16, 26, 40].into_iter().flat_map(|distance| {
+            let rays = [(1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (0, 1)];
+            let places = [10, 16, 26, 40].into_iter().flat_map(|distance| {
                 rays.map(|(dx, dy)| {
                     let left = match dx {
                         1 => at.0 + distance,
@@ -277,7 +308,12 @@ fn write_legend(area: &Area, chart: &Chart) -> Result<(), Failure> {
     mark(area, (base_x + 12, base_y + y + 20), Marker::Circle, grey, false)?;
     area.draw(&Text::new("hollow: to nearest", (24, y + 13), (FONT, LETTERS)))?;
     area.draw(&Circle::new((12, y + 40), 7, BLACK.stroke_width(1)))?;
-    area.draw(&Text::new("ringed: Pareto front", (24, y + 33), (FONT, LETTERS)))?;
+    area.draw(&Text::new("ringed: Pareto front of", (24, y + 33), (FONT, LETTERS)))?;
+    for (front, name) in chart.fronts.iter().enumerate() {
+        let y = y + 60 + 20 * front as i32;
+        area.draw(&PathElement::new(vec![(5, y), (19, y)], line(front)))?;
+        area.draw(&Text::new(name.clone(), (24, y - 7), (FONT, LETTERS)))?;
+    }
     Ok(())
 }
 
@@ -299,7 +335,7 @@ impl Axis {
         let (least, most) = if least <= most { (least, most) } else { (-1.0, 0.0) };
         let margin = 0.06 * (most - least).max(0.5);
         let has_zero = numbers.into_iter().any(|n| n == 0.0);
-        let zero = has_zero.then(|| least - 2.5 * margin);
+        let zero = has_zero.then_some(least - 2.5 * margin);
         let (from, to) = (zero.unwrap_or(least) - margin, most + margin);
         // 1, 2, 5 in each decade while there are few of them, else every so many decades.
         let decades = (most - least).max(0.5);
@@ -388,10 +424,19 @@ mod tests {
 
     #[test]
     fn charts_are_drawn_with_their_labels() {
-        let point = |x: f64, y: f64, front: Option<&str>| Point { x, y, filled: true, front: front.map(str::to_owned) };
+        let point = |x: f64, y: f64, label: Option<&str>| {
+            let front = label.map(|label| Front { front: 0, label: label.to_owned() });
+            Point { x, y, filled: true, front }
+        };
         let points = vec![point(1e-3, 9.0, Some("1 left")), point(0.0, 20.0, None), point(0.1, 2.0, Some("2 <right>"))];
         let series = vec![Series { name: "imp".to_owned(), color: 0, marker: Marker::Circle, points }];
-        let chart = Chart { title: "T".to_owned(), x: "error".to_owned(), y: "ms".to_owned(), series };
+        let chart = Chart {
+            title: "T".to_owned(),
+            x: "error".to_owned(),
+            y: "ms".to_owned(),
+            series,
+            fronts: vec!["all".to_owned()],
+        };
         let svg = chart.svg().unwrap();
         assert!(svg.contains("1 left") && svg.contains("2 &lt;right&gt;") && svg.ends_with("</svg>\n"));
         assert_eq!(svg.matches("<svg").count(), 1);

@@ -1,7 +1,7 @@
 //! Views of what was measured: JSON, which is the data itself, CSV, tables, charts and a page.
 
 mod chart;
-mod number;
+mod expression;
 mod page;
 mod scene;
 mod table;

@@ -7,11 +7,12 @@ use maud::Markup;
 use maud::PreEscaped;
 use maud::html;
 
+use crate::accuracy::number::brief;
 use crate::accuracy::picture::LEGEND;
 use crate::accuracy::report::Report;
 use crate::accuracy::report::failed;
-use crate::accuracy::report::number::brief;
 use crate::accuracy::report::scene::kind;
+use crate::accuracy::report::table::Cell;
 use crate::accuracy::report::table::Shown;
 use crate::accuracy::report::table::Table;
 use crate::accuracy::scene::Measured;
@@ -52,7 +53,10 @@ pub fn of_scene(cost: &SceneCost) -> Result<String, Diagnostic> {
                 "claims of proof that the reference contradicts, over all levels: {contradicted}. {}",
                 if contradicted == 0 { "So it must be." } else { "This is a bug in Imp; please report it." }
             )),
-            ("Domain", format!("its longest side has {} units; errors of 1 are errors of that length.", brief(cost.side))),
+            ("Domain", match cost.dimension {
+                2 => "of a plane scene: the error is the share of wrong pixels.".to_owned(),
+                _ => format!("its longest side has {} units; a depth error of that length is an error of 1.", brief(cost.side)),
+            }),
         ]))
         (charts(cost)?)
         (table(&cost.table()))
@@ -72,8 +76,8 @@ pub fn of_scene(cost: &SceneCost) -> Result<String, Diagnostic> {
                 div.pair { (image(&reference.color, "the reference")) }
             }
         }
-        h3 { "Pareto front" }
-        (cards(cost.levels.iter().filter(|row| row.measured().is_some_and(|m| m.pareto))))
+        h3 { "Pareto fronts" }
+        (cards(cost.levels.iter().filter(|row| row.measured().is_some_and(|m| m.pareto || m.pareto_finders))))
         @for name in cost.kinds() {
             details {
                 summary { (name) }
@@ -123,8 +127,8 @@ pub fn charts(report: &impl Report) -> Result<Markup, Diagnostic> {
         h2 { "Time against error" }
         p {
             "Towards the left is closer, towards the bottom is faster. Of two points the one further to the left and below is the "
-            "better level; the ringed ones, joined by the grey line, are beaten by none: the Pareto front. Their labels begin with "
-            "the row's number in the table. Hollow points are rounded to nearest and prove nothing."
+            "better level; the ringed ones, joined by a line, are beaten by none: a Pareto front. Their labels begin with the row's "
+            "number in the table. Hollow points are rounded to nearest and prove nothing."
         }
         @for svg in figures { figure.chart { (PreEscaped(svg)) } }
     })
@@ -133,13 +137,7 @@ pub fn charts(report: &impl Report) -> Result<Markup, Diagnostic> {
 /// A table that can be sorted, with the meaning of its columns.
 pub fn table(table: &Table) -> Markup {
     let shown = table.shown(Shown::Page);
-    let text = |c: usize| {
-        table.lines.iter().any(|line| {
-            line.failure.is_none()
-                && line.cells[c].key().is_none()
-                && line.cells[c] != crate::accuracy::report::table::Cell::Missing
-        })
-    };
+    let text = |c: usize| table.lines.iter().any(|line| matches!(line.cells[c], Cell::Text(_)));
     html! {
         h2 { "All levels" }
         p { "A click on a heading sorts by it, a second click turns the order round. "

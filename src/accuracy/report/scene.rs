@@ -1,7 +1,9 @@
 //! Views of a scene's levels.
 
+use crate::accuracy::level::OWN_ENGINE;
 use crate::accuracy::report::Report;
 use crate::accuracy::report::chart::Chart;
+use crate::accuracy::report::chart::Front;
 use crate::accuracy::report::chart::Marker;
 use crate::accuracy::report::chart::Point;
 use crate::accuracy::report::chart::Series;
@@ -48,6 +50,9 @@ const FIELDS: &[Field<Row>] = &[
     }),
     field("pareto", "front", Terminal, "marked if no other level has both a smaller error and a smaller time", |row| {
         row.measured().map_or(Cell::Mark(false), |m| Cell::Mark(m.pareto))
+    }),
+    field("pareto_finders", "finders' front", Page, "the same among the root finders of the literature alone", |row| {
+        row.measured().map_or(Cell::Mark(false), |m| Cell::Mark(m.pareto_finders))
     }),
     field(
         "name",
@@ -200,14 +205,16 @@ impl Report for SceneCost {
             title: "Time against error".to_owned(),
             x: "error: mean depth error in sides of the domain, a wrong pixel counts as 1".to_owned(),
             y: "milliseconds".to_owned(),
-            series: self.series(|m| Some(m.errors.error), |m| m.pareto),
+            series: self.series(|m| Some(m.errors.error), |m| m.pareto, |m| m.pareto_finders),
+            fronts: ["all levels", "finders alone"].map(str::to_owned).to_vec(),
         }];
         if self.dimension == 3 {
             charts.push(Chart {
                 title: "Time against the length of the brackets that are given".to_owned(),
                 x: "median bracket in the scene's units".to_owned(),
                 y: "milliseconds".to_owned(),
-                series: self.series(|m| m.errors.bracket_median, |m| m.pareto_bracket),
+                series: self.series(|m| m.errors.bracket_median, |m| m.pareto_bracket, |_| false),
+                fronts: vec!["rounded outward".to_owned()],
             });
         } else {
             charts[0].x = "share of wrong pixels".to_owned();
@@ -238,7 +245,7 @@ impl SceneCost {
         for row in &self.levels {
             let kind = kind(row);
             if row.measured().is_some() && !kinds.iter().any(|(_, known)| *known == kind) {
-                kinds.push((usize::from(row.engine != "imp"), kind));
+                kinds.push((usize::from(row.engine != OWN_ENGINE), kind));
             }
         }
         kinds.sort();
@@ -246,19 +253,25 @@ impl SceneCost {
     }
 
     /// One series for each engine and arithmetic, filled where rounding is outward.
-    fn series(&self, x: fn(&Measured) -> Option<f64>, on_front: fn(&Measured) -> bool) -> Vec<Series> {
+    fn series(
+        &self,
+        x: fn(&Measured) -> Option<f64>,
+        on_front: fn(&Measured) -> bool,
+        on_second: fn(&Measured) -> bool,
+    ) -> Vec<Series> {
         let series = |(index, name): (usize, String)| {
             let rows = self.levels.iter().filter(|row| kind(row) == name);
             let points = rows.filter_map(|row| {
                 let measured = row.measured()?;
+                let front = if on_front(measured) { Some(0) } else { on_second(measured).then_some(1) };
                 Some(Point {
                     x: x(measured)?,
                     y: measured.ms,
                     filled: row.rounding == "outward",
-                    front: on_front(measured).then(|| label(row)),
+                    front: front.map(|front| Front { front, label: label(row) }),
                 })
             });
-            let marker = if name.starts_with("imp") { Marker::Circle } else { Marker::of(index) };
+            let marker = if name.starts_with(OWN_ENGINE) { Marker::Circle } else { Marker::of(index) };
             Series { points: points.collect(), name, color: index, marker }
         };
         self.kinds().into_iter().enumerate().map(series).collect()
@@ -267,12 +280,12 @@ impl SceneCost {
 
 /// What a row has in common with the others of its series. Affine forms of a finder share its series.
 pub(super) fn kind(row: &Row) -> String {
-    if row.engine == "imp" { format!("imp {}", row.arithmetic) } else { row.engine.to_owned() }
+    if row.engine == OWN_ENGINE { format!("{OWN_ENGINE} {}", row.arithmetic) } else { row.engine.to_owned() }
 }
 
 /// The row's number and what sets it apart, as short as can be.
 fn label(row: &Row) -> String {
-    let kind = if row.engine == "imp" { row.arithmetic } else { row.engine };
+    let kind = if row.engine == OWN_ENGINE { row.arithmetic } else { row.engine };
     let goal = match row.depth {
         Some(depth) => format!("2^-{depth}"),
         None => format!("{}x{}", row.size[0], row.size[1]),

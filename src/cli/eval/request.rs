@@ -242,7 +242,7 @@ impl<'w> Evaluator<'w> {
         self.values.clear();
         for (name, ends) in &request.vars.0 {
             let value = self.value(&name.0, ends)?;
-            self.values.push(Decorated::new(value));
+            self.values.push(value);
         }
         let Self { values, boxes, .. } = self;
         let (values, mut boxes) = (std::mem::take(values), std::mem::take(boxes));
@@ -258,7 +258,7 @@ impl<'w> Evaluator<'w> {
         answer
     }
 
-    fn value(&self, name: &str, ends: &Ends) -> Result<Interval, Fault> {
+    fn value(&self, name: &str, ends: &Ends) -> Result<Decorated, Fault> {
         let fast = match ends {
             Ends::One(text) => number::decimal(&text.0),
             Ends::Two(lo, hi) => match (number::decimal(&lo.0), number::decimal(&hi.0)) {
@@ -267,7 +267,7 @@ impl<'w> Evaluator<'w> {
             },
         };
         if let Some(value) = fast {
-            return Ok(value);
+            return Ok(Decorated::new(value));
         }
         let text = match ends {
             Ends::One(text) => text.0.clone(),

@@ -2,11 +2,15 @@
 
 mod affine;
 mod arithmetic;
+mod conformance;
 mod decorations;
 mod elementary;
 mod linear;
+mod literals;
 mod modal;
 mod powers;
+mod relations;
+mod reverse;
 mod rounding;
 mod special;
 

@@ -9,13 +9,11 @@ mod reference;
 
 use std::time::Instant;
 
-use rayon::prelude::*;
+use mpfr::Mpfr;
 use reference::HEADER;
 use reference::Operation;
+use reference::REVERSE;
 use reference::Tally;
-
-/// Cases that one task runs, with a seed of its own: the arguments do not depend on the number of threads.
-const CHUNK: u64 = 5_000;
 
 fn main() {
     let mut words = std::env::args().skip(1);
@@ -27,14 +25,21 @@ fn main() {
     println!("{cases} cases per operation, values of MPFR with {} bits\n\n{HEADER}", mpfr::PRECISION);
     let start = Instant::now();
     let (mut escapes, mut wide) = (Vec::new(), Vec::new());
-    for op in Operation::all().into_iter().filter(|op| format!("{op:?}").contains(&wanted)) {
-        let tally = (0..cases.div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|chunk| Tally::of(op, chunk, CHUNK.min(cases - chunk * CHUNK), &mut mpfr::Mpfr))
-            .reduce(Tally::default, Tally::merge);
-        println!("{}", tally.row(op));
-        escapes.extend(tally.escape);
-        wide.extend(tally.widest.filter(|_| tally.lower.max(tally.upper) > op.allowance()));
+    let run = |name: &str, work: &(dyn Fn(u64, u64) -> Tally + Sync)| {
+        let tally = Tally::in_chunks(cases, 5_000, work);
+        println!("{}", tally.row(name));
+        tally
+    };
+    for op in Operation::all() {
+        let name = format!("{op:?}");
+        if name.contains(&wanted) {
+            let tally = run(&name, &|seed, cases| Tally::of(op, seed, cases, &mut Mpfr));
+            wide.extend(tally.widest.filter(|_| tally.lower.max(tally.upper) > op.allowance()));
+            escapes.extend(tally.escape);
+        }
+    }
+    for op in REVERSE.iter().filter(|op| op.name.contains(&wanted)) {
+        escapes.extend(run(op.name, &|seed, cases| Tally::of_reverse(op, seed, cases, &mut Mpfr)).escape);
     }
     println!("\n{:.0} s", start.elapsed().as_secs_f64());
     escapes.iter().for_each(|text| println!("escape: {text}"));

@@ -13,6 +13,7 @@ use rug::ops::Pow as _;
 use crate::reference::Operation;
 use crate::reference::Operation::*;
 use crate::reference::Oracle;
+use crate::reference::root;
 
 pub const PRECISION: u32 = 200;
 /// 2/pi to this many bits times any `f64`, below 2^1024, has an error below 2^-170, and no multiple of pi/2 other than 0
@@ -59,6 +60,7 @@ impl Oracle for Mpfr {
             Recip => neighbours(a.recip_ref()),
             Sqr => neighbours(a.square_ref()),
             Sqrt => neighbours(a.sqrt_ref()),
+            Rsqrt => neighbours(a.recip_sqrt_ref()),
             Cbrt => neighbours(a.cbrt_ref()),
             Hypot => neighbours(a.hypot_ref(&b)),
             Abs => neighbours(a.abs_ref()),
@@ -72,6 +74,7 @@ impl Oracle for Mpfr {
             Floor => neighbours(a.floor_ref()),
             Ceil => neighbours(a.ceil_ref()),
             Round => neighbours(a.round_ref()),
+            RoundTiesEven => neighbours(a.round_even_ref()),
             Trunc => neighbours(a.trunc_ref()),
             Modulo => {
                 let (x, y) = (Rational::from_f64(x)?, Rational::from_f64(y)?);
@@ -83,10 +86,14 @@ impl Oracle for Mpfr {
             Exp2 => neighbours(a.exp2_ref()),
             Exp10 => neighbours(a.exp10_ref()),
             Expm1 => neighbours(a.exp_m1_ref()),
+            Exp2m1 => neighbours(a.exp2_m1_ref()),
+            Exp10m1 => neighbours(a.exp10_m1_ref()),
             Ln => neighbours(a.ln_ref()),
             Log2 => neighbours(a.log2_ref()),
             Log10 => neighbours(a.log10_ref()),
             Log1p => neighbours(a.ln_1p_ref()),
+            Log2p1 => neighbours(a.log2_1p_ref()),
+            Log10p1 => neighbours(a.log10_1p_ref()),
             Sin => neighbours(a.sin_ref()),
             Cos => neighbours(a.cos_ref()),
             Tan => neighbours(a.tan_ref()),
@@ -101,11 +108,12 @@ impl Oracle for Mpfr {
             Acosh => neighbours(a.acosh_ref()),
             Atanh => neighbours(a.atanh_ref()),
             PowInt(n) => neighbours((&a).pow(n)),
+            Rootn(n) => self.bracket(root(n), args),
             PowRatio(p, q) => {
                 // x^|p| is exact with 53 |p| bits, and 1/t decreases on either side of 0.
                 let power = Float::with_val(53 * p.unsigned_abs(), (&a).pow(p.unsigned_abs()));
-                let [down, up] = [Round::Down, Round::Up]
-                    .map(|round| Float::with_val_round(PRECISION, power.root_ref(q), round).0);
+                let [down, up] =
+                    [Round::Down, Round::Up].map(|round| Float::with_val_round(PRECISION, power.root_ref(q), round).0);
                 if p > 0 {
                     return between(&down, &up);
                 }
