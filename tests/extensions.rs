@@ -111,7 +111,12 @@ fn value(op: Op, x: &BigFloat, y: &BigFloat, cc: &mut Consts) -> Option<BigFloat
     let one = big(1.0);
     let positive = !x.is_negative() && !x.is_zero();
     let inside_one = !below(&one, &x.abs());
+    // The oracle takes its time where results leave all bounds.
+    let moderate = |x: &BigFloat| below(&x.abs(), &big(200.0));
     let defined = match op {
+        Op::Exp | Op::Exp2 | Op::Exp10 | Op::Expm1 | Op::Sinh | Op::Cosh | Op::Tanh => moderate(x),
+        Op::Sin | Op::Cos | Op::Tan => below(&x.abs(), &big(1e9)),
+        Op::Pow => positive && moderate(x) && moderate(y),
         Op::Div => !y.is_zero(),
         Op::PowInt(n) => n >= 0 || !x.is_zero(),
         Op::PowRatio(p, q) => (p >= 0 || !x.is_zero()) && (q % 2 == 1 || positive || x.is_zero()),
@@ -121,7 +126,6 @@ fn value(op: Op, x: &BigFloat, y: &BigFloat, cc: &mut Consts) -> Option<BigFloat
         Op::Asin | Op::Acos => inside_one,
         Op::Atanh => below(&x.abs(), &one),
         Op::Acosh => !below(x, &one),
-        Op::Pow => positive,
         Op::Atan2 => !x.is_zero() || !y.is_zero(),
         _ => true,
     };
