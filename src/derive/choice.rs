@@ -23,9 +23,9 @@ use crate::graph::Value;
 use crate::interval::Decorated;
 use crate::interval::Interval;
 
-/// Halvings of the domain. In space they end at about 8 pixels of a picture, amid the cells that a renderer tries with
-/// their derivative; in the plane at one pixel, because what is left there stays unknown.
-const LEVELS_IN_SPACE: usize = 6;
+/// Halvings of the domain. In space they end at about 4 pixels of a picture, where a renderer that tries cells with their
+/// derivative too settles most; in the plane at one pixel, because what is left there stays unknown.
+const LEVELS_IN_SPACE: usize = 7;
 const LEVELS_IN_THE_PLANE: usize = 9;
 
 /// Cells of a level that are cut, at most, and how many operations of the graph all of a trial may evaluate, so that it
@@ -39,7 +39,7 @@ const LEAST_SAMPLES: usize = 4;
 /// In operations of a program on one lane: what a cell costs that is left at the finest level, and what compiling an
 /// operation costs.
 const LEFT: f64 = 1600.0;
-const COMPILATION: f64 = 20_000.0;
+const COMPILATION: f64 = 60_000.0;
 
 /// What one arithmetic would have to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
