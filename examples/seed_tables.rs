@@ -4,7 +4,7 @@
 //!     cargo run --release --example seed_tables            # all of them
 //!     cargo run --release --example seed_tables -- newton  # one: `march`, `affine` or `newton`
 //!
-//! Everything runs on one thread; a time is the least of three runs. On Linux it is the processor's time of the threads
+//! Everything runs on one thread; a time is the least of seven runs. On Linux it is the processor's time of the threads
 //! that search, which a busy machine disturbs least; elsewhere it is the clock's. Evaluations are exact counts.
 
 use std::error::Error;
@@ -29,7 +29,7 @@ use imp::render::Renderer;
 use imp::render::Stop;
 use imp::session;
 
-const REPEATS: u32 = 3;
+const REPEATS: u32 = 7;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let wanted = std::env::args().nth(1);
@@ -176,7 +176,9 @@ fn march() -> Result<(), Box<dyn Error>> {
         ("mitchell", 22, [1.3, 1.0, 0.24]),
     ];
     println!("## K-march, t-march, Mitchell (Knoll et al. 2007, table 1)\n");
-    println!("| function | d | method | their time / K | f32 nearest: time / K | F, F', points a pixel | hits | f64 outward: time / K | F, F', points a pixel | hits | proved |");
+    println!(
+        "| function | d | method | their time / K | f32 nearest: time / K | F, F', points a pixel | hits | f64 outward: time / K | F, F', points a pixel | hits | proved |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, depth, fps) in THEIRS {
         let subject = Subject::new(name, SIDE)?;
@@ -191,11 +193,8 @@ fn march() -> Result<(), Box<dyn Error>> {
                 epsilon,
             };
             let nearest = subject.sample(settings)?;
-            let outward = subject.sample(Settings {
-                precision: Precision::Double,
-                rounding: Rounding::Outward,
-                ..settings
-            })?;
+            let outward =
+                subject.sample(Settings { precision: Precision::Double, rounding: Rounding::Outward, ..settings })?;
             let [single, double] = *first.get_or_insert([nearest.seconds, outward.seconds]);
             let theirs = fps.get(index).map_or("".to_owned(), |own| format!("{:.2}", fps[0] / own));
             println!(
@@ -247,7 +246,9 @@ fn affine() -> Result<(), Box<dyn Error>> {
         ("water", None),
     ];
     println!("## Interval against affine arithmetic (Hijazi 2008, table 7.1)\n");
-    println!("| function | their RAA / IA | IA: evaluations a pixel | AF1: evaluations a pixel | IA / AF1 evaluations | nearest: speed AF1 / IA | outward: speed AF1 / IA | outward IA: ms | Imp: ms | speed Imp / IA | hits IA | hits AF1 | hits Imp |");
+    println!(
+        "| function | their RAA / IA | IA: evaluations a pixel | AF1: evaluations a pixel | IA / AF1 evaluations | nearest: speed AF1 / IA | outward: speed AF1 / IA | outward IA: ms | Imp: ms | speed Imp / IA | hits IA | hits AF1 | hits Imp |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, fps) in THEIRS {
         let subject = Subject::new(name, SIDE)?;
@@ -256,14 +257,10 @@ fn affine() -> Result<(), Box<dyn Error>> {
             let precision = Precision::Single;
             subject.sample(Settings { finder, precision, rounding, arithmetic, epsilon: EPSILON })
         };
-        let [ia, raa] = [
-            measure(Arithmetic::Interval, Rounding::Nearest)?,
-            measure(Arithmetic::Affine, Rounding::Nearest)?,
-        ];
-        let [ia_out, raa_out] = [
-            measure(Arithmetic::Interval, Rounding::Outward)?,
-            measure(Arithmetic::Affine, Rounding::Outward)?,
-        ];
+        let [ia, raa] =
+            [measure(Arithmetic::Interval, Rounding::Nearest)?, measure(Arithmetic::Affine, Rounding::Nearest)?];
+        let [ia_out, raa_out] =
+            [measure(Arithmetic::Interval, Rounding::Outward)?, measure(Arithmetic::Affine, Rounding::Outward)?];
         let (picture, seconds) = subject.engine(EPSILON)?;
         let theirs = fps.map_or("".to_owned(), |[ia, raa]| format!("{:.2}", raa / ia));
         println!(
@@ -302,7 +299,9 @@ fn newton() -> Result<(), Box<dyn Error>> {
     ];
     for epsilon in [1e-3, 1e-7, 1e-12] {
         println!("## Root finders with derivatives (Flórez 2008, table 4.1), epsilon {epsilon:e}\n");
-        println!("| surface | method | their time / Mitchell | time / Mitchell | evaluations a pixel: F, F', points | all / Mitchell | hits | proved |");
+        println!(
+            "| surface | method | their time / Mitchell | time / Mitchell | evaluations a pixel: F, F', points | all / Mitchell | hits | proved |"
+        );
         println!("|---|---|---|---|---|---|---|---|");
         for (name, theirs) in THEIRS {
             let subject = Subject::new(name, SIDE)?;

@@ -294,8 +294,7 @@ fn search<T: Format>(
         driver.run(packets, &mut found)
     } else {
         let searches = rays.iter().enumerate();
-        let searches =
-            searches.filter_map(|(pixel, ray)| Search::new(rules, pixel, (*ray)?, &scene.domain, epsilon));
+        let searches = searches.filter_map(|(pixel, ray)| Search::new(rules, pixel, (*ray)?, &scene.domain, epsilon));
         driver.run(searches, &mut found)
     };
     (found, evaluations)

@@ -77,12 +77,7 @@ pub struct Packet {
 
 impl Packet {
     /// The packet of some rays, up to four, with its first question; `None` if none of them meets the domain.
-    pub fn new(
-        rules: Rules,
-        rays: &[(usize, Ray)],
-        scene: &Scene,
-        epsilon: f64,
-    ) -> Option<(Self, Question<RAYS>)> {
+    pub fn new(rules: Rules, rays: &[(usize, Ray)], scene: &Scene, epsilon: f64) -> Option<(Self, Question<RAYS>)> {
         let axis = rays.first().map(|(_, ray)| dominant(ray))?;
         let mut members = Vec::with_capacity(RAYS);
         for &(pixel, ray) in rays {
@@ -192,8 +187,8 @@ impl Packet {
     }
 
     fn march(&mut self, answers: &[Answer; RAYS]) -> Option<Question<RAYS>> {
-        for i in 0..RAYS {
-            self.members[i].open = self.takes_part(&self.members[i]) && !self.rules.excludes(&answers[i]);
+        for (i, answer) in answers.iter().enumerate() {
+            self.members[i].open = self.takes_part(&self.members[i]) && !self.rules.excludes(answer);
         }
         if self.members.iter().all(|member| !member.open) {
             return self.pass();
@@ -204,11 +199,11 @@ impl Packet {
                 _ => self.descend(),
             };
         }
-        for i in 0..RAYS {
-            let [start, end] = self.span(&self.members[i]);
-            if self.members[i].open {
-                let inside = self.members[i].inside;
-                self.register(i, [start.max(inside[0]), end.min(inside[1])], &answers[i]);
+        for (i, answer) in answers.iter().enumerate() {
+            let member = &self.members[i];
+            if member.open {
+                let ([start, end], inside) = (self.span(member), member.inside);
+                self.register(i, [start.max(inside[0]), end.min(inside[1])], answer);
             }
         }
         self.pass()

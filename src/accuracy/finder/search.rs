@@ -194,13 +194,7 @@ pub struct Search {
 
 impl Search {
     /// The search along the ray of a pixel, with its first question; `None` if the ray misses the domain.
-    pub fn new(
-        rules: Rules,
-        pixel: usize,
-        ray: Ray,
-        domain: &[Interval],
-        epsilon: f64,
-    ) -> Option<(Self, Question<1>)> {
+    pub fn new(rules: Rules, pixel: usize, ray: Ray, domain: &[Interval], epsilon: f64) -> Option<(Self, Question<1>)> {
         let (entry, exit) = ray.clip(domain)?;
         let whole = [entry[0], exit[1]];
         // Intervals of a few neighbouring numbers cannot be halved.
