@@ -171,6 +171,13 @@ fn infinite_widths_are_texts_in_json() {
 }
 
 #[test]
+fn constants_have_a_row_for_every_way() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = succeed(folder.path(), &["cost", "1/3 + 1/5", "--repeat", "1"]);
+    assert!(table.contains("interval x1") && table.contains("needs no compiled kernel"), "{table}");
+}
+
+#[test]
 fn mistakes_are_told_before_anything_is_measured() {
     let folder = scene(SPHERE);
     let folder = folder.path();

@@ -276,6 +276,10 @@ impl Bench<'_> {
         parts.sort_unstable();
         let outcomes = match method {
             Method::Reference(extension) => parts.iter().map(|&parts| self.reference(extension, parts)).collect(),
+            Method::Kernel { .. } if inputs.is_empty() => {
+                let failure = "left out: a constant needs no compiled kernel".to_owned();
+                vec![Outcome::Failed { failure }; parts.len()]
+            }
             Method::Kernel { arithmetic, precision, rounding } => {
                 let spec = self.spec(arithmetic, rounding);
                 let measured = match precision {

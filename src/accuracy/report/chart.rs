@@ -333,7 +333,8 @@ impl Axis {
         let least = exponents.clone().fold(f64::INFINITY, f64::min);
         let most = exponents.fold(f64::NEG_INFINITY, f64::max);
         let (least, most) = if least <= most { (least, most) } else { (-1.0, 0.0) };
-        let margin = 0.06 * (most - least).max(0.5);
+        // At least 0.8 decades, of which any stretch holds two of 1, 2, 5 times a power of ten.
+        let margin = (0.06 * (most - least)).max(0.4 - 0.5 * (most - least));
         let has_zero = numbers.into_iter().any(|n| n == 0.0);
         let zero = has_zero.then_some(least - 2.5 * margin);
         let (from, to) = (zero.unwrap_or(least) - margin, most + margin);
