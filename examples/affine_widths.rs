@@ -29,18 +29,8 @@ const BARTH: &str = "4(phi^2 x^2 - y^2)(phi^2 y^2 - z^2)(phi^2 z^2 - x^2) - (1 +
 
 const CASES: &[Case] = &[
     Case { formula: "x (10 - x)", sides: &[("x", 4.0, 6.0)], parts: LINE, fine: 1 << 14 },
-    Case {
-        formula: BARTH,
-        sides: &[("x", 0.1, 0.2), ("y", 0.3, 0.4), ("z", 0.2, 0.3)],
-        parts: SPACE,
-        fine: 40,
-    },
-    Case {
-        formula: BARTH,
-        sides: &[("x", 1.0, 1.1), ("y", 0.5, 0.6), ("z", -0.1, 0.1)],
-        parts: SPACE,
-        fine: 40,
-    },
+    Case { formula: BARTH, sides: &[("x", 0.1, 0.2), ("y", 0.3, 0.4), ("z", 0.2, 0.3)], parts: SPACE, fine: 40 },
+    Case { formula: BARTH, sides: &[("x", 1.0, 1.1), ("y", 0.5, 0.6), ("z", -0.1, 0.1)], parts: SPACE, fine: 40 },
     Case { formula: "sqrt(x^2 - x + 1/2) / sqrt(x^2 + 1/2)", sides: &[("x", -2.0, 2.0)], parts: LINE, fine: 1 << 14 },
     Case { formula: "exp(-x^2) sin(3x)", sides: &[("x", -2.0, 2.0)], parts: LINE, fine: 1 << 14 },
 ];

@@ -79,7 +79,9 @@ fn a_scene_becomes_a_table_data_charts_and_a_page() {
     let csv = fs::read_to_string(folder.join("c.csv")).unwrap();
     let mut lines = csv.lines();
     let heads: Vec<&str> = lines.next().unwrap().split(',').collect();
-    for wanted in ["name", "ms", "ratio", "evaluations", "unknown", "wrong", "depth_max", "thin_parts_missed", "failure"] {
+    for wanted in
+        ["name", "ms", "ratio", "evaluations", "unknown", "wrong", "depth_max", "thin_parts_missed", "failure"]
+    {
         assert!(heads.contains(&wanted), "{wanted}");
     }
     assert_eq!(lines.count(), levels.len());
@@ -114,7 +116,10 @@ fn coarse_brackets_are_further_from_the_truth() {
     let cost = json(folder.path(), "c.json");
     let error = |depth: u64| {
         let wanted = |level: &&&Value| {
-            level["engine"] == "bisection" && level["depth"] == depth && level["rounding"] == "outward" && level["arithmetic"] == "interval"
+            level["engine"] == "bisection"
+                && level["depth"] == depth
+                && level["rounding"] == "outward"
+                && level["arithmetic"] == "interval"
         };
         measured(&cost).iter().find(wanted).unwrap()["error"].as_f64().unwrap()
     };

@@ -9,6 +9,7 @@ use imp::derive::Arithmetic;
 use imp::derive::Output;
 use imp::derive::Rounding;
 use imp::derive::Spec;
+use imp::derive::choose;
 use imp::graph::Graph;
 use imp::graph::Op;
 use imp::graph::Value;
@@ -117,6 +118,43 @@ fn barth_sextic_agrees_with_the_interpreter() {
         let spec = spec(graph, f, domain, Arithmetic::Interval);
         agree::<f32>(&*Compiler.compile_f32(&spec).unwrap(), &*Interpreter.compile_f32(&spec).unwrap(), 3, 1e-3, 1);
         agree::<f64>(&*Compiler.compile_f64(&spec).unwrap(), &*Interpreter.compile_f64(&spec).unwrap(), 3, 1e-11, 2);
+    }
+}
+
+/// A sum of one expression for each of x, y, z, and a constant.
+fn separable(constant: i64, mut term: impl FnMut(&mut Graph, Value) -> Value) -> (Graph, Value) {
+    let mut g = Graph::new();
+    let mut sum = g.int(constant);
+    for name in ["x", "y", "z"] {
+        let input = g.var(name);
+        let own = term(&mut g, input);
+        sum = g.add(sum, own);
+    }
+    (g, sum)
+}
+
+/// Hijazi's table 7.1: affine forms are worth their price for the tangle and the Barth sextic, not for a superquadric of
+/// degree 200, whose terms have nothing to share.
+#[test]
+fn auto_chooses_by_counting() {
+    let tangle = separable(12, |g, x| {
+        let (square, five) = (g.sqr(x), g.int(5));
+        let (fourth, multiple) = (g.sqr(square), g.mul(five, square));
+        g.sub(fourth, multiple)
+    });
+    let superquadric = separable(-1, |g, x| g.unary(Op::PowInt(200), x));
+    for ((graph, root), radius, arithmetic) in [
+        (tangle, 2.5, Arithmetic::Affine),
+        (barth(), 2.0, Arithmetic::Affine),
+        (superquadric, 1.25, Arithmetic::Interval),
+    ] {
+        let range = Interval::new(-radius, radius).expect("a range");
+        let choice =
+            choose(&graph, root, &["x", "y", "z"].map(|name| (name, range)), &[]).expect("small enough to try");
+        assert_eq!(choice.arithmetic, arithmetic, "{choice}");
+        let again = choose(&graph, root, &["x", "y", "z"].map(|name| (name, range)), &[]);
+        assert_eq!(again, Some(choice), "the same input, the same choice");
+        assert!(choice.affine.operations > choice.interval.operations && choice.affine.left <= choice.interval.left);
     }
 }
 

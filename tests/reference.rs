@@ -19,7 +19,6 @@ use astro_float::RoundingMode;
 use imp::graph::Op;
 use num_rational::BigRational;
 use oracle::big;
-use rayon::prelude::*;
 use reference::HEADER;
 use reference::Operation;
 use reference::Operation::*;
@@ -34,17 +33,20 @@ fn cases() -> u64 {
     std::env::var("IMP_TEST_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(150)
 }
 
+/// Runs the cases and prints a row.
+fn run(name: &str, work: impl Fn(u64, u64, &mut Values) -> Tally + Sync) -> Tally {
+    let tally = Tally::in_chunks(cases(), 25, |seed, cases| {
+        work(seed, cases, &mut Values { cc: Consts::new().expect("constants") })
+    });
+    println!("{}", tally.row(name));
+    tally
+}
+
 #[test]
 fn every_operation_encloses_its_values_tightly() {
-    let tallies: Vec<(Operation, Tally)> = Operation::all()
-        .into_par_iter()
-        .map(|op| (op, Tally::of(op, 1, cases(), &mut Values { cc: Consts::new().expect("constants") })))
-        .collect();
     println!("{HEADER}");
-    for (op, tally) in &tallies {
-        println!("{}", tally.row(&format!("{op:?}")));
-    }
-    for (op, tally) in tallies {
+    for op in Operation::all() {
+        let tally = run(&format!("{op:?}"), |seed, cases, values| Tally::of(op, seed, cases, values));
         assert_eq!(tally.escapes, 0, "{}", tally.escape.unwrap_or_default());
         let worst = tally.lower.max(tally.upper);
         assert!(worst <= op.allowance(), "{worst} units: {}", tally.widest.unwrap_or_default());
@@ -53,12 +55,8 @@ fn every_operation_encloses_its_values_tightly() {
 
 #[test]
 fn reverse_operations_find_every_solution() {
-    let tallies: Vec<Tally> = REVERSE
-        .par_iter()
-        .map(|op| Tally::of_reverse(op, 2, cases(), &mut Values { cc: Consts::new().expect("constants") }))
-        .collect();
-    for (op, tally) in REVERSE.iter().zip(tallies) {
-        println!("{}", tally.row(op.name));
+    for op in REVERSE {
+        let tally = run(op.name, |seed, cases, values| Tally::of_reverse(op, seed, cases, values));
         assert!(tally.members > cases() / 2, "{} has hardly been asked", op.name);
         assert_eq!(tally.escapes, 0, "{}", tally.escape.unwrap_or_default());
     }
@@ -136,16 +134,16 @@ impl Values {
     fn value(&mut self, op: Op, x: f64, y: f64) -> BigFloat {
         oracle::value(op, x, y, &mut self.cc).expect("a value of high precision")
     }
+}
 
-    /// e^t - 1, for |t| < 2^-90 by three terms of the series, which are off by less than 2^-270 of it.
-    fn expm1_of(&mut self, t: &BigFloat) -> BigFloat {
-        let p = P + 64;
-        if t.abs() < big(2f64.powi(-90)) {
-            let tail = big(1.0).add(&t.div(&big(3.0), p, RM), p, RM).mul(t, p, RM).div(&big(2.0), p, RM);
-            return big(1.0).add(&tail, p, RM).mul(t, p, RM);
-        }
-        t.exp(p + 128, RM, &mut self.cc).sub(&big(1.0), p + 128, RM)
+/// e^t - 1, for |t| < 2^-90 by three terms of the series, which are off by less than 2^-270 of it.
+fn expm1(t: &BigFloat, cc: &mut Consts) -> BigFloat {
+    let p = P + 64;
+    if t.abs() < big(2f64.powi(-90)) {
+        let tail = big(1.0).add(&t.div(&big(3.0), p, RM), p, RM).mul(t, p, RM).div(&big(2.0), p, RM);
+        return big(1.0).add(&tail, p, RM).mul(t, p, RM);
     }
+    t.exp(p + 128, RM, cc).sub(&big(1.0), p + 128, RM)
 }
 
 impl Oracle for Values {
@@ -215,7 +213,8 @@ impl Oracle for Values {
             Exp | Exp2 | Exp10 | Cosh | Cos if x == 0.0 => limit(1.0),
             Acos if x == 0.0 => limit(FRAC_PI_2),
             Ln | Log2 | Log10 if x == 0.0 => limit(f64::NEG_INFINITY),
-            Expm1 | Exp2m1 | Exp10m1 | Log1p | Log2p1 | Log10p1 | Sin | Tan | Asin | Atan | Sinh | Tanh | Asinh | Atanh
+            Expm1 | Exp2m1 | Exp10m1 | Log1p | Log2p1 | Log10p1 | Sin | Tan | Asin | Atan | Sinh | Tanh | Asinh
+            | Atanh
                 if x == 0.0 =>
             {
                 limit(0.0)
@@ -236,8 +235,8 @@ impl Oracle for Values {
             Atan2 if x.is_infinite() && y.is_infinite() => None,
             Atan2 if !finite || x == 0.0 || y == 0.0 => limit(x.atan2(y)),
             // Through e^t - 1 and ln(1 + x), whose small values the oracle keeps.
-            Exp2m1 => nearly(&self.expm1_of(&a().mul(&self.cc.ln_2(P + 64, RM), P + 64, RM))),
-            Exp10m1 => nearly(&self.expm1_of(&a().mul(&self.cc.ln_10(P + 64, RM), P + 64, RM))),
+            Exp2m1 => nearly(&expm1(&a().mul(&self.cc.ln_2(P + 64, RM), P + 64, RM), &mut self.cc)),
+            Exp10m1 => nearly(&expm1(&a().mul(&self.cc.ln_10(P + 64, RM), P + 64, RM), &mut self.cc)),
             Log2p1 => nearly(&self.value(Op::Log1p, x, y).div(&self.cc.ln_2(P, RM), P, RM)),
             Log10p1 => nearly(&self.value(Op::Log1p, x, y).div(&self.cc.ln_10(P, RM), P, RM)),
             _ => nearly(&self.value(elementary(op), x, y)),
@@ -249,7 +248,8 @@ impl Oracle for Values {
         let half_pi = self.cc.pi(1400, RM).div(&big(2.0), 1400, RM);
         let [first, last] = [lo, hi].map(|x| big(x).div(&half_pi, 1400, RM).floor());
         let turns = first.div(&big(4.0), 1400, RM).floor();
-        let difference = |x: &BigFloat, y: &BigFloat| exact(&oracle::sum(x, &y.neg())).map_or(0, |(down, _)| down as u32);
+        let difference =
+            |x: &BigFloat, y: &BigFloat| exact(&oracle::sum(x, &y.neg())).map_or(0, |(down, _)| down as u32);
         (difference(&first, &turns.mul_full_prec(&big(4.0))), difference(&last, &first))
     }
 }

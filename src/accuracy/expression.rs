@@ -10,17 +10,17 @@ use serde::Serialize;
 use crate::accuracy::Progress;
 use crate::accuracy::level::precision_name;
 use crate::accuracy::level::rounding_name;
-use crate::accuracy::pareto;
-use crate::accuracy::range::Range;
 use crate::accuracy::number::serialize;
 use crate::accuracy::number::serialize_pair;
+use crate::accuracy::pareto;
+use crate::accuracy::range::Range;
 use crate::derive::Arithmetic;
+use crate::derive::Extension;
+use crate::derive::Formula;
 use crate::derive::Output;
 use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::derive::Spec;
-use crate::derive::Extension;
-use crate::derive::Formula;
 use crate::diagnostic::Diagnostic;
 use crate::graph::Graph;
 use crate::graph::Value;
@@ -137,7 +137,7 @@ pub struct Measured {
     pub us: f64,
     /// `us` over the baseline's.
     pub ratio: Option<f64>,
-    /// On the Pareto front of excess and time.
+    /// On the Pareto front of excess and time among what is rounded outward.
     pub pareto: bool,
 }
 
@@ -204,17 +204,7 @@ pub fn of_expression(subject: Subject, repeats: u32, backend: &dyn Backend, prog
                 Method::Kernel { .. } => format!("compiled {arithmetic} {precision} {rounding} x{parts}"),
             };
             let boxes = boxes(subject.inputs, parts).unwrap_or(u64::MAX);
-            rows.push(Enclosed {
-                number: 0,
-                name,
-                engine,
-                arithmetic,
-                precision,
-                rounding,
-                parts,
-                boxes,
-                outcome,
-            });
+            rows.push(Enclosed { number: 0, name, engine, arithmetic, precision, rounding, parts, boxes, outcome });
         }
     }
     progress(steps, steps, "");
@@ -225,8 +215,9 @@ pub fn of_expression(subject: Subject, repeats: u32, backend: &dyn Backend, prog
 fn finish(subject: Subject, range: Option<Range>, repeats: u32, mut rows: Vec<Enclosed>) -> ExpressionCost {
     let baseline = rows.first().map_or_else(String::new, |row| row.name.clone());
     let unit = rows.first().and_then(Enclosed::measured).map(|measured| measured.us);
-    // What may have lost a value competes with nothing.
-    let point = |row: &Enclosed| row.measured().filter(|m| m.holds).map(|m| (m.excess[1], m.us));
+    // An enclosure is worth its proof: what is rounded to nearest competes with nothing.
+    let outward = rounding_name(Rounding::Outward);
+    let point = |row: &Enclosed| row.measured().filter(|_| row.rounding == outward).map(|m| (m.excess[1], m.us));
     let points: Vec<(f64, f64)> = rows.iter().map(|row| point(row).unwrap_or((f64::NAN, f64::NAN))).collect();
     for (row, pareto) in rows.iter_mut().zip(pareto::front(&points)) {
         if let Outcome::Measured(measured) = &mut row.outcome {
@@ -235,7 +226,8 @@ fn finish(subject: Subject, range: Option<Range>, repeats: u32, mut rows: Vec<En
         }
     }
     // What lost values comes behind what holds, and what failed comes last.
-    let key = |row: &Enclosed| row.measured().map_or((2, f64::NAN, f64::NAN), |m| (u8::from(!m.holds), m.excess[1], m.us));
+    let key =
+        |row: &Enclosed| row.measured().map_or((2, f64::NAN, f64::NAN), |m| (u8::from(!m.holds), m.excess[1], m.us));
     rows.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2))
@@ -244,7 +236,8 @@ fn finish(subject: Subject, range: Option<Range>, repeats: u32, mut rows: Vec<En
         row.number = number + 1;
     }
     let inputs = subject.graph.variables().iter().zip(subject.inputs);
-    let input = |(name, x): (&String, &Decorated)| Input { name: name.clone(), lo: x.interval().lo(), hi: x.interval().hi() };
+    let input =
+        |(name, x): (&String, &Decorated)| Input { name: name.clone(), lo: x.interval().lo(), hi: x.interval().hi() };
     ExpressionCost {
         expression: subject.text.to_owned(),
         version: env!("CARGO_PKG_VERSION"),
@@ -307,11 +300,14 @@ impl Bench<'_> {
         let boxes = boxes(inputs, parts).unwrap_or(u64::MAX);
         let foretold = start.elapsed().mul_f64(boxes as f64);
         if foretold > PATIENCE {
-            return Outcome::Failed { failure: format!("left out: {boxes} boxes would take {:.0} s", foretold.as_secs_f64()) };
+            return Outcome::Failed {
+                failure: format!("left out: {boxes} boxes would take {:.0} s", foretold.as_secs_f64()),
+            };
         }
         let (value, seconds) = self.timed(|| self.formula.enclose_in_parts(extension, inputs, parts));
         let interval = value.interval();
-        let hull = if interval.is_empty() { (f64::INFINITY, f64::NEG_INFINITY) } else { (interval.lo(), interval.hi()) };
+        let hull =
+            if interval.is_empty() { (f64::INFINITY, f64::NEG_INFINITY) } else { (interval.lo(), interval.hi()) };
         self.outcome(hull, Some(value.decoration().to_string()), self.formula.operations(extension), boxes, seconds)
     }
 
@@ -504,7 +500,10 @@ mod tests {
 
     #[test]
     fn many_inputs_are_cut_into_fewer_parts() {
-        let cost = cost("v0 = var x\nv1 = var y\nv2 = var z\nv3 = mul v0, v1\nv4 = mul v3, v2\nout f = v4\n", &[(0.0, 1.0); 3]);
+        let cost = cost(
+            "v0 = var x\nv1 = var y\nv2 = var z\nv3 = mul v0, v1\nv4 = mul v3, v2\nout f = v4\n",
+            &[(0.0, 1.0); 3],
+        );
         assert_eq!(cost.enclosures.iter().map(|row| row.parts).max(), Some(16));
     }
 }

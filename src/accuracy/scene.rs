@@ -136,7 +136,7 @@ pub struct Measured {
     pub pareto: bool,
     /// The same among the root finders of the literature alone.
     pub pareto_finders: bool,
-    /// On the Pareto front of the brackets' length and time.
+    /// On the Pareto front of the brackets' length and time among what is rounded outward.
     pub pareto_bracket: bool,
     #[serde(skip)]
     pub pictures: Pictures,
@@ -348,7 +348,9 @@ impl<'a> Bench<'a> {
         };
         let by_error = front(&rows, &|_, m| Some(m.errors.error));
         let of_finders = front(&rows, &|row, m| (row.engine != OWN_ENGINE).then_some(m.errors.error));
-        let by_bracket = front(&rows, &|_, m| m.errors.bracket_median);
+        // A bracket is a claim, which only rounding outward makes.
+        let outward = rounding_name(Rounding::Outward);
+        let by_bracket = front(&rows, &|row, m| m.errors.bracket_median.filter(|_| row.rounding == outward));
         for (index, row) in rows.iter_mut().enumerate() {
             if let Outcome::Measured(measured) = &mut row.outcome {
                 measured.ratio = unit.map(|unit| measured.ms / unit);

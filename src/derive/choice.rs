@@ -23,8 +23,10 @@ use crate::graph::Value;
 use crate::interval::Decorated;
 use crate::interval::Interval;
 
-/// Halvings of the domain: cells of 1/32 of it, about the blocks of 16 pixels at which a renderer turns to derivatives.
-const LEVELS: u32 = 5;
+/// Halvings of the domain. In space they end at about 8 pixels of a picture, amid the cells that a renderer tries with
+/// their derivative; in the plane at one pixel, because what is left there stays unknown.
+const LEVELS_IN_SPACE: usize = 6;
+const LEVELS_IN_THE_PLANE: usize = 9;
 
 /// Cells of a level that are cut, at most, and how many operations of the graph all of a trial may evaluate, so that it
 /// takes a few milliseconds.
@@ -37,7 +39,7 @@ const LEAST_SAMPLES: usize = 4;
 /// In operations of a program on one lane: what a cell costs that is left at the finest level, and what compiling an
 /// operation costs.
 const LEFT: f64 = 1600.0;
-const COMPILATION: f64 = 10_000.0;
+const COMPILATION: f64 = 20_000.0;
 
 /// What one arithmetic would have to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,12 +71,9 @@ impl fmt::Display for Choice {
         };
         write!(
             f,
-            "{verdict}: on trial cells of the domain, affine forms leave {:.2} of those that intervals leave and test {:.2} \
-             as many, with {} operations each against {}; in all {ratio:.2} of the operations",
-            affine.left / interval.left.max(1.0),
-            affine.tested / interval.tested.max(1.0),
-            affine.operations,
-            interval.operations,
+            "{verdict}: on trial, affine forms would test {:.0} cells and leave {:.0}, intervals {:.0} and {:.0}, with {} \
+             operations a cell against {}; in all {ratio:.2} of the work",
+            affine.tested, affine.left, interval.tested, interval.left, affine.operations, interval.operations,
         )
     }
 }
@@ -91,7 +90,8 @@ pub fn choose(
     parameters: &[(&str, Interval)],
 ) -> Option<Choice> {
     let needed = graph.reachable(&[root]).into_iter().filter(|&needed| needed).count();
-    let boxes = LEVELS as usize * (1 << domain.len());
+    let levels = if domain.len() < 3 { LEVELS_IN_THE_PLANE } else { LEVELS_IN_SPACE };
+    let boxes = levels * (1 << domain.len());
     let samples = (BUDGET / (boxes * needed.max(1))).min(SAMPLES);
     if samples < LEAST_SAMPLES {
         return None;
@@ -108,7 +108,7 @@ pub fn choose(
             known(domain, name).unwrap_or_else(|| Interval::point(parameter().unwrap_or(0.5)))
         })
         .collect();
-    let counts = trial(&formula, start, samples);
+    let counts = trial(&formula, start, levels, samples);
     let [interval, affine] = [0, 1].map(|i| {
         let (operations, Count { tested, left }) = (costs[i], counts[i]);
         let total = tested * operations as f64 + left * LEFT + operations as f64 * COMPILATION;
@@ -126,7 +126,8 @@ fn program(
     parameters: &[(&str, Interval)],
     arithmetic: Arithmetic,
 ) -> LaneProgram {
-    let owned = |list: &[(&str, Interval)]| -> Vec<String> { list.iter().map(|(name, _)| (*name).to_owned()).collect() };
+    let owned =
+        |list: &[(&str, Interval)]| -> Vec<String> { list.iter().map(|(name, _)| (*name).to_owned()).collect() };
     let mut graph = graph.clone();
     let ranges = domain.iter().map(|&(name, range)| (graph.var(name), range)).collect();
     let spec = Spec {
@@ -151,7 +152,7 @@ struct Count {
 }
 
 /// Estimates by intervals and by affine forms, from so many sampled cells a level.
-fn trial(formula: &Formula, domain: Vec<Interval>, samples: usize) -> [Count; 2] {
+fn trial(formula: &Formula, domain: Vec<Interval>, levels: usize, samples: usize) -> [Count; 2] {
     let undecided = |extension: Extension, cell: &[Interval]| {
         let inputs: Vec<Decorated> = cell.iter().map(|&x| Decorated::new(x)).collect();
         let value = formula.enclose(extension, &inputs).interval();
@@ -160,23 +161,23 @@ fn trial(formula: &Formula, domain: Vec<Interval>, samples: usize) -> [Count; 2]
     let mut counts = [Count { tested: 1.0, left: 1.0 }; 2];
     let mut cells = vec![domain];
     let mut random = Sequence(0);
-    for _ in 0..LEVELS {
-        // A cell that stays undecided is cut in all its directions; of more than enough, a sample stands for all.
+    for _ in 0..levels {
+        // A cell that stays undecided is cut in all its directions.
+        let parts: Vec<Vec<Interval>> = cells.iter().flat_map(|cell| halves(cell)).collect();
+        let (cut, tried) = (cells.len() as f64, parts.len() as f64);
+        counts.iter_mut().for_each(|count| count.tested += count.left * tried / cut);
+        cells = parts.into_iter().filter(|cell| undecided(Extension::Natural, cell)).collect();
+        counts[0].left *= cells.len() as f64 / cut;
+        if cells.is_empty() {
+            counts[1].left = 0.0;
+            break;
+        }
+        // Of more than enough cells, a sample stands for all.
         for i in 0..samples.min(cells.len()) {
             let other = i + random.below(cells.len() - i);
             cells.swap(i, other);
         }
         cells.truncate(samples);
-        let parts: Vec<Vec<Interval>> = cells.iter().flat_map(|cell| halves(cell)).collect();
-        let fan = parts.len() as f64 / cells.len() as f64;
-        counts.iter_mut().for_each(|count| count.tested += count.left * fan);
-        let tried = parts.len() as f64;
-        cells = parts.into_iter().filter(|cell| undecided(Extension::Natural, cell)).collect();
-        counts[0].left *= fan * cells.len() as f64 / tried;
-        if cells.is_empty() {
-            counts[1].left = 0.0;
-            break;
-        }
         // Affine forms within natural extensions leave no cell that intervals refute.
         let affine = cells.iter().filter(|cell| undecided(Extension::Intersected(Symbols::Three), cell)).count();
         counts[1].left = counts[0].left * affine as f64 / cells.len() as f64;

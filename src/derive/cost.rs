@@ -1,5 +1,5 @@
-//! What an operation costs: operations on `f64` numbers, counted and not timed, so that the choice of an arithmetic is the
-//! same on every machine. Bounds rounded down and up count as two operations.
+//! What an operation costs: operations on `f64` numbers, counted and not timed, so that the choice of an arithmetic is
+//! the same on every machine. Bounds rounded down and up count as two operations.
 
 use crate::derive::Symbols;
 use crate::graph::Graph;

@@ -1,5 +1,5 @@
-//! The ways in which Imp encloses a formula over a box, side by side: the natural extension, affine forms, centred forms.
-//! Reference arithmetic throughout: `f64`, rounded outward, as tight as each way allows.
+//! The ways in which Imp encloses a formula over a box, side by side: the natural extension, affine forms, centred
+//! forms. Reference arithmetic throughout: `f64`, rounded outward, as tight as each way allows.
 //!
 //! Centred forms (Moore 1966; Neumaier, "Interval methods for systems of equations", 1990, section 2.3) need the
 //! increments of f enclosed by derivative times step. That holds where f is continuous on the box and the derivative is
@@ -25,8 +25,8 @@ use crate::interval::Form;
 use crate::interval::Interval;
 use crate::interval::Sparse;
 
-/// Noise symbols of affine forms: AF1 with so many shared ones, which the first inputs get that are no points, or one for
-/// every input and for every operation that is not affine.
+/// Noise symbols of affine forms: AF1 with so many shared ones, which the first inputs get that are no points, or one
+/// for every input and for every operation that is not affine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Symbols {
     One,
@@ -139,8 +139,8 @@ impl Formula {
         self.graph.variables()
     }
 
-    /// Encloses the formula's values on a box. The decoration says what the natural extension proves of the formula there,
-    /// whichever extension has computed the enclosure.
+    /// Encloses the formula's values on a box. The decoration says what the natural extension proves of the formula
+    /// there, whichever extension has computed the enclosure.
     ///
     /// # Panics
     /// If the number of inputs is not the number of variables.
@@ -162,9 +162,9 @@ impl Formula {
         Decorated::with(interval, natural.decoration())
     }
 
-    /// The hull of the enclosures over each input cut into `parts` equal parts; points and unbounded inputs are not cut.
-    /// The decoration is the least of all boxes': they are closed and cover the whole, so that what is continuous on each
-    /// of them is continuous on their union.
+    /// The hull of the enclosures over each input cut into `parts` equal parts; points and unbounded inputs are not
+    /// cut. The decoration is the least of all boxes': they are closed and cover the whole, so that what is continuous
+    /// on each of them is continuous on their union.
     ///
     /// # Panics
     /// As [`Formula::enclose`].
@@ -188,8 +188,8 @@ impl Formula {
         }
     }
 
-    /// Operations on `f64` numbers that one box costs: counted from the graph, so that it never changes. How an operation
-    /// counts is written in `derive::cost`.
+    /// Operations on `f64` numbers that one box costs: counted from the graph, so that it never changes. How an
+    /// operation counts is written in `derive::cost`.
     pub fn operations(&self, extension: Extension) -> u64 {
         let natural = cost::natural(&self.graph, &[self.root]);
         let dimension = self.variables().len() as u64;
@@ -200,8 +200,8 @@ impl Formula {
                 let intersections = 2 * cost::steps(&self.graph, self.root);
                 natural + cost::affine(&self.graph, self.root, symbols) + intersections
             }
-            // The natural extension for the decoration, the value at the middle, the slopes; then, for each input, a step, a
-            // product and a sum.
+            // The natural extension for the decoration, the value at the middle, the slopes; then, for each input, a
+            // step, a product and a sum.
             Extension::MeanValue => {
                 let Derived { graph, roots } = self.gradient();
                 2 * natural + cost::natural(graph, roots) + dimension * (2 + cost::PRODUCT + 2)
@@ -227,8 +227,8 @@ impl Formula {
         }
     }
 
-    /// Operation by operation on affine forms. Beside each form goes the enclosure that the next operations see: its range,
-    /// or that within the natural extension.
+    /// Operation by operation on affine forms. Beside each form goes the enclosure that the next operations see: its
+    /// range, or that within the natural extension.
     fn forms<C: Coefficients>(&self, intersect: bool, inputs: &[Decorated]) -> Interval {
         let needed = self.graph.reachable(&[self.root]);
         let mut values: Vec<(Form<C>, Interval)> = vec![(Form::UNBOUNDED, Interval::EMPTY); self.graph.len()];
@@ -304,8 +304,8 @@ impl Formula {
     }
 
     /// Taylor's formula of second order holds where the gradient is continuous and has increments enclosed by its
-    /// derivatives. A continuous gradient has every kink decided, so that the mixed derivatives are symmetric and one of
-    /// each two will do.
+    /// derivatives. A continuous gradient has every kink decided, so that the mixed derivatives are symmetric and one
+    /// of each two will do.
     fn second_order(&self, natural: Decorated, inputs: &[Decorated]) -> Option<Interval> {
         if natural.decoration() < Decoration::Dac {
             return None;

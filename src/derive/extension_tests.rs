@@ -1,3 +1,5 @@
+//! Each extension by hand: a parabola, kinks, poles, points, boxes without end.
+
 use super::*;
 use crate::graph::parse;
 

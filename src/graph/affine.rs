@@ -8,8 +8,8 @@ use crate::interval::Linear;
 
 /// The form of one operation on operands with the given forms and enclosures; `value` encloses the result on those.
 ///
-/// Operations whose [`Op::affine`] is `ThroughInterval` have the form of `value`, which shares no symbol with anything. So
-/// do all others where they have no bounds between lines.
+/// Operations whose [`Op::affine`] is `ThroughInterval` have the form of `value`, which shares no symbol with
+/// anything. So do all others where they have no bounds between lines.
 pub fn apply_affine<C: Coefficients>(op: Op, operands: &[(Form<C>, Interval)], value: Interval) -> Form<C> {
     let form = match operands {
         [(x, range)] => unary(op, x, *range),

@@ -6,8 +6,8 @@
 pub enum AffineForm {
     /// Exact up to rounding: every noise symbol keeps its meaning.
     Exact,
-    /// A certified affine approximation with an error term: between two lines, a product of forms, or composed of those.
-    /// Where the operation has no bounds, through the interval all the same.
+    /// A certified affine approximation with an error term: between two lines, a product of forms, or composed of
+    /// those. Where the operation has no bounds, through the interval all the same.
     Approximated,
     /// Through the interval enclosure: the result has an error term alone.
     ThroughInterval,
@@ -38,7 +38,8 @@ macro_rules! op_table {
             Var(u32),
             /// `x^n` for an integer n: total for n >= 0 (with x^0 = 1), a pole at 0 for n < 0.
             PowInt(i32),
-            /// `x^(p/q)`, reduced, q >= 2 (q > 0). With odd q real for x < 0; with even q the domain is [0, inf); p < 0 excludes 0.
+            /// `x^(p/q)`, reduced, q >= 2 (q > 0). With odd q real for x < 0; with even q the domain is [0, inf); p <
+            /// 0 excludes 0.
             PowRatio(i32, u32),
             $(#[doc = $doc] $variant,)*
         }

@@ -115,9 +115,9 @@ impl Coefficients for Sparse {
         self.0.iter().map(|&(_, a)| a)
     }
 
-    /// For every s > 0, u v = ((u + s v)^2 - (u - s v)^2) / 4s, so that u v is at least -rad(u - s v)^2 / 4s and at most
-    /// rad(u + s v)^2 / 4s. With s the quotient of the radii neither is larger than the product of the radii, and what u
-    /// and v share cancels in one of them: the square of a form gets [0, rad^2].
+    /// For every s > 0, u v = ((u + s v)^2 - (u - s v)^2) / 4s, so that u v is at least -rad(u - s v)^2 / 4s and at
+    /// most rad(u + s v)^2 / 4s. With s the quotient of the radii neither is larger than the product of the radii, and
+    /// what u and v share cancels in one of them: the square of a form gets [0, rad^2].
     fn quadratic(x: &Form<Self>, y: &Form<Self>) -> Interval {
         const MODERATE: std::ops::Range<f64> = 1e-100..1e100;
         let s = x.radius() / y.radius();

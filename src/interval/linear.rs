@@ -1,15 +1,15 @@
 //! Certified linear enclosures of functions of one variable: what affine forms apply to their operand.
 //!
-//! Over an interval X a function f is enclosed between two parallel lines, f(x) in s x + D for every x of X at which f is
-//! defined. The slope s is a number, so that nothing about it needs to be known: D encloses f(x) - s x on X for whatever
-//! s there is. A good s makes D narrow (Chebyshev's minimax line where f is bent one way), and no rounding of s can make
-//! it wrong.
+//! Over an interval X a function f is enclosed between two parallel lines, f(x) in s x + D for every x of X at which f
+//! is defined. The slope s is a number, so that nothing about it needs to be known: D encloses f(x) - s x on X for
+//! whatever s there is. A good s makes D narrow (Chebyshev's minimax line where f is bent one way), and no rounding of
+//! s can make it wrong.
 //!
-//! D comes from pieces of X on which f is convex or concave. On a convex piece [p, q] the difference g(x) = f(x) - s x is
-//! convex too, whence
+//! D comes from pieces of X on which f is convex or concave. On a convex piece [p, q] the difference g(x) = f(x) - s x
+//! is convex too, whence
 //! - g(x) <= max(g(p), g(q)), and
-//! - g(x) >= g(u) + g'(u) (x - u) for every u of the piece: the tangent lies below. With u near the place where f'(u) = s
-//!   the bound is the least value of g up to terms of second order, and it holds wherever u is.
+//! - g(x) >= g(u) + g'(u) (x - u) for every u of the piece: the tangent lies below. With u near the place where f'(u)
+//!   = s the bound is the least value of g up to terms of second order, and it holds wherever u is.
 //!
 //! Both are evaluated with intervals. On concave pieces the two change sides. Between pieces, where an inflection lies
 //! that is no `f64`, g is enclosed as f(Y) - s Y on the few numbers Y around it.
@@ -136,10 +136,10 @@ where
         if place.is_nan() { piece.range.mid() } else { place.clamp(piece.range.lo(), piece.range.hi()) }
     }
 
-    /// The slope of the narrowest band along a graph with one inflection. One of its lines passes through the end that is
-    /// farther from the inflection and touches the graph beyond the inflection, or passes through the other end if that comes first.
-    /// The secant's slope is stationary where it touches, so that going back and forth between place and slope
-    /// converges quadratically.
+    /// The slope of the narrowest band along a graph with one inflection. One of its lines passes through the end that
+    /// is farther from the inflection and touches the graph beyond the inflection, or passes through the other end if
+    /// that comes first. The secant's slope is stationary where it touches, so that going back and forth between place
+    /// and slope converges quadratically.
     fn slope_past_inflection(&self, x: Interval, left: &Piece, right: &Piece) -> f64 {
         let far_right = right.range.width() >= left.range.width();
         let (end, mut place, piece) = if far_right { (x.hi(), x.lo(), left) } else { (x.lo(), x.hi(), right) };

@@ -288,8 +288,8 @@ impl Linear {
             if !gap.is_empty() {
                 gaps.push(gap);
             }
-            // From here to the next inflection the function is the cosine of the distance from the middle, concave, if k
-            // is even, and else its negative. The derivative is the negative sine of that distance, or the sine.
+            // From here to the next inflection the function is the cosine of the distance from the middle, concave, if
+            // k is even, and else its negative. The derivative is the negative sine of that distance, or the sine.
             let (lo, hi) = (inflection(k).hi().max(x.lo()), inflection(k + 1.0).lo().min(x.hi()));
             if let Some(range) = Interval::new(lo, hi) {
                 let even = k % 2.0 == 0.0;

@@ -283,7 +283,7 @@ impl<'a> Reader<'a> {
             let divisor = self.take(|c| c.is_ascii_digit());
             let divisor = BigInt::parse_bytes(divisor.as_bytes(), 10).filter(|d| !d.is_zero());
             let divisor = divisor.ok_or_else(|| self.error_at(divisor_at, "expected a whole number above 0"))?;
-            return Ok(BigRational::new(value, divisor));
+            return Ok(BigRational::new_raw(value, divisor));
         }
         let exponent = if self.accept('e') { self.exponent()? } else { 0 };
         Ok(scaled(value, 10, exponent - places, DIGITS))
@@ -345,21 +345,23 @@ impl Bound {
     }
 }
 
-/// `value * base^exponent`. Beyond `limit` digits before the point the result stands still at that limit, and below as
-/// many after it too: its order among `f64`s and their neighbours stays, and no exponent fills the memory.
+/// `value * base^exponent`. Numbers of more than `limit` digits before the point, or zeros after it, all become one
+/// number a little farther out: their order among `f64`s and among the others stays, and no exponent fills the memory.
 fn scaled(value: BigInt, base: u32, exponent: i64, limit: i64) -> BigRational {
     if value.is_zero() {
         return BigRational::zero();
     }
-    // 4 bits hold a decimal digit and 3 do not: this is the number's length in digits, to within a sixth of it.
-    let length = if base == 2 { value.bits() as i64 } else { value.bits() as i64 * 3 / 10 };
+    // log10(2) = 0.3010299957: the length of the number in digits, within 2 for any text that fits into memory.
+    let bits = value.bits() as i64;
+    let length = if base == 2 { bits } else { (i128::from(bits) * 30103 / 100_000) as i64 };
     let power = |e: i64| BigInt::from(base).pow(e.unsigned_abs() as u32);
+    let beyond = limit + 10;
     let unit = BigInt::from(if value < BigInt::zero() { -1 } else { 1 });
-    if exponent.saturating_add(length) > limit {
-        return BigRational::from(unit * power(limit));
+    // Nothing is reduced to lowest terms: that would cost the square of the length.
+    match exponent.saturating_add(length) {
+        e if e > limit => BigRational::from(unit * power(beyond)),
+        e if e < -limit => BigRational::new_raw(unit, power(beyond)),
+        _ if exponent >= 0 => BigRational::from(value * power(exponent)),
+        _ => BigRational::new_raw(value, power(exponent)),
     }
-    if exponent.saturating_add(length) < -limit {
-        return BigRational::new(unit, power(limit));
-    }
-    if exponent >= 0 { BigRational::from(value * power(exponent)) } else { BigRational::new(value, power(exponent)) }
 }

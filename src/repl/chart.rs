@@ -96,12 +96,30 @@ fn draw<B: DrawingBackend>(area: DrawingArea<B, Shift>, plot: &Plot) -> Result<(
     let visible = |point: &&(f64, f64)| (y.0..=y.1).contains(&point.1);
     for band in &plot.bands {
         if band.continuous {
-            let inner = band.points.iter().map(|&(x, y)| (x, inside(y)));
-            chart.draw_series([PathElement::new(inner.collect::<Vec<_>>(), CURVE.stroke_width(2))])?;
+            for pair in band.points.windows(2) {
+                if let Some(segment) = clipped(pair[0], pair[1], y) {
+                    chart.draw_series([PathElement::new(segment, CURVE.stroke_width(2))])?;
+                }
+            }
         } else {
             let dots = band.points.iter().filter(visible).map(|&point| Circle::new(point, 1, CURVE.filled()));
             chart.draw_series(dots)?;
         }
     }
     area.present()
+}
+
+/// The part of a segment that lies between two heights.
+fn clipped(from: (f64, f64), to: (f64, f64), heights: (f64, f64)) -> Option<[(f64, f64); 2]> {
+    let (lo, hi) = heights;
+    if from.1.max(to.1) < lo || from.1.min(to.1) > hi {
+        return None;
+    }
+    let at = |height: f64| (from.0 + (to.0 - from.0) * ((height - from.1) / (to.1 - from.1)), height);
+    let end = |point: (f64, f64)| match point.1 {
+        y if y < lo => at(lo),
+        y if y > hi => at(hi),
+        _ => point,
+    };
+    Some([end(from), end(to)])
 }

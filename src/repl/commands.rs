@@ -1,7 +1,5 @@
 //! The commands of the REPL: one table of names, arguments and help, and what finds a command in it.
 
-use std::path::Path;
-
 use crate::diagnostic::code;
 use crate::diagnostic::did_you_mean;
 use crate::program;
@@ -139,8 +137,10 @@ pub fn names(state: &State) -> Vec<String> {
     let builtins = program::BUILTINS.iter().map(|builtin| builtin.name.to_owned());
     let library = program::stdlib_docs().iter().map(|doc| doc.name.to_owned());
     let own = state.workspace.definitions().filter_map(|(name, _)| name.map(str::to_owned));
+    let imported = state.workspace.imported().iter().map(|(name, _)| name.clone());
     let variables = state.bindings.keys().cloned();
-    let mut all: Vec<String> = variables.chain(own).chain(builtins).chain(library).chain(commands).collect();
+    let mut all: Vec<String> =
+        variables.chain(own).chain(imported).chain(builtins).chain(library).chain(commands).collect();
     all.extend(["pi", "tau", "e"].map(str::to_owned));
     all.sort();
     all.dedup();
@@ -154,6 +154,9 @@ pub fn describe(state: &State, name: &str) -> Option<String> {
     }
     if let Some((_, written)) = state.workspace.definitions().find(|(defined, _)| *defined == Some(name)) {
         return Some(written.to_owned());
+    }
+    if let Some((_, written)) = state.workspace.imported().iter().find(|(defined, _)| defined == name) {
+        return Some(written.clone());
     }
     let command = name.strip_prefix(':').unwrap_or(name);
     if let Some(command) = COMMANDS.iter().find(|other| other.name == command) {
@@ -200,7 +203,8 @@ fn load(state: &mut State, path: &Snippet) -> Result<String, Messages> {
     let inner = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
     let path = if inner.is_some() { path.within(1..text.len() - 1) } else { path.clone() };
     state.workspace.load(&path, &state.bindings)?;
-    Ok(format!("loaded {}", Path::new(path.as_str()).display()))
+    let names: Vec<&str> = state.workspace.imported().iter().map(|(name, _)| name.as_str()).collect();
+    Ok(wrapped(&format!("loaded {}:", path.as_str()), &names, state.columns))
 }
 
 fn vars(state: &mut State, _: &Snippet) -> Result<String, Messages> {

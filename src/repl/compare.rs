@@ -1,7 +1,8 @@
 //! `:compare` and `:bisect`: what the arithmetics make of one expression, at once and in parts.
 
 use crate::derive::Extension;
-use crate::interval::decimal;
+use crate::interval::Decorated;
+use crate::repl::plot::short;
 use crate::repl::state::Prepared;
 use crate::repl::state::State;
 use crate::repl::table::table;
@@ -22,7 +23,7 @@ pub fn compare(state: &mut State, expression: &Snippet) -> Result<String, Messag
         let value = choice.enclose(&formula, &boxes).value;
         let operations = choice.operations(&formula).to_string();
         let (interval, decoration) = (value.interval(), value.decoration());
-        [choice.to_string(), interval.to_string(), width(interval), operations, decoration.to_string()]
+        [choice.to_string(), interval.to_string(), short(interval.width()), operations, decoration.to_string()]
     };
     let choices = Extension::ALL.iter().map(|extension| Choice::One(*extension)).chain([Choice::Auto]);
     let rows: Vec<[String; 5]> = choices.map(row).collect();
@@ -33,16 +34,18 @@ pub fn compare(state: &mut State, expression: &Snippet) -> Result<String, Messag
 pub fn bisect(state: &mut State, expression: &Snippet) -> Result<String, Messages> {
     let prepared = state.prepare(expression)?;
     let choice = state.choice;
-    let free = prepared.free().len() as i32;
+    // All that is not a single number is cut, also the enclosure of a decimal.
+    let wide = |value: &&Decorated| value.interval().is_bounded() && !value.interval().is_singleton();
+    let free = prepared.boxes.iter().filter(wide).count() as i32;
     let once = choice.operations(&prepared.formula) as f64;
     let mut rows: Vec<[String; 4]> = Vec::new();
     let mut before = f64::NAN;
     let mut parts = 1;
     while parts <= MOST_PARTS && once * f64::from(parts).powi(free) <= MAX_OPERATIONS {
         let interval = choice.enclose_in_parts(&prepared.formula, &prepared.boxes, parts).value.interval();
-        let ratio = before / interval.width();
-        let ratio = if ratio.is_finite() { decimal((1000.0 * ratio).round() / 1000.0) } else { String::new() };
-        rows.push([parts.to_string(), interval.to_string(), width(interval), ratio]);
+        let gain = before - interval.width();
+        let gain = if gain.is_finite() { short(gain) } else { String::new() };
+        rows.push([parts.to_string(), interval.to_string(), width(interval), gain]);
         before = interval.width();
         if free == 0 {
             break;

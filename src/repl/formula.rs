@@ -51,6 +51,10 @@ pub fn formula(graph: &Graph, root: Value) -> Option<String> {
                 right => (format!("{} + {right}", at(0, Level::Sum)), Level::Sum),
             },
             Op::Sub => (format!("{} - {}", at(0, Level::Sum), at(1, Level::Product)), Level::Sum),
+            // Numbers stand in front.
+            Op::Mul if graph.as_constant(node.operands()[1]).is_some() => {
+                (format!("{}*{}", at(1, Level::Product), at(0, Level::Power)), Level::Product)
+            }
             Op::Mul => (format!("{}*{}", at(0, Level::Product), at(1, Level::Power)), Level::Product),
             Op::Div => (format!("{}/{}", at(0, Level::Product), at(1, Level::Power)), Level::Product),
             Op::Less => (format!("{} < {}", at(0, Level::Sum), at(1, Level::Sum)), Level::Relation),

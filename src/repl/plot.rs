@@ -14,6 +14,7 @@ use crate::diagnostic::code;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
+use crate::interval::decimal;
 use crate::repl::chart;
 use crate::repl::state::Prepared;
 use crate::repl::state::State;
@@ -25,10 +26,11 @@ use crate::session::expression::Snippet;
 
 /// Lines of a picture in the terminal.
 const HEIGHT: u16 = 18;
-/// Bands of a picture in a file.
-const PARTS: usize = 128;
+/// Bands of a picture in a file, and columns of text that a band has in the terminal.
+const PARTS: usize = 64;
+const BAND: usize = 3;
 /// Points of the curve in each band.
-const POINTS: usize = 6;
+const POINTS: usize = 12;
 
 /// What a picture shows.
 pub struct Plot {
@@ -60,8 +62,8 @@ pub fn plot(state: &mut State, arguments: &Snippet) -> Result<String, Messages> 
         let fault = snippet.fault(code::NO_EXTENT, format!("the box of `{name}` has no ends to plot between"), "");
         return Err(fault.help(format!("give it some, such as `{name} = [-10, 10]`")));
     }
-    let columns = (state.columns.saturating_sub(14)).clamp(20, 72);
-    let parts = if file.is_some() { PARTS } else { columns };
+    let columns = (state.columns.saturating_sub(14)).clamp(7 * BAND, 24 * BAND) / BAND * BAND;
+    let parts = if file.is_some() { PARTS } else { columns / BAND };
     let plot = compute(snippet.as_str(), &prepared, variable, state.choice, parts);
     let Some(plot) = plot else {
         return Ok(format!("undefined on all of {range}: nothing to draw"));
@@ -194,7 +196,7 @@ fn cell(plot: &Plot, buffer: &Buffer, column: usize, row: u16) -> String {
     }
     let height = (plot.y.1 - plot.y.0) / f64::from(HEIGHT);
     let middle = plot.y.1 - height * (f64::from(row) + 0.5);
-    let shaded = plot.bands.get(column).is_some_and(|band| {
+    let shaded = plot.bands.get(column / BAND).is_some_and(|band| {
         let enclosure = band.enclosure;
         enclosure.lo() <= middle + height / 2.0 && enclosure.hi() >= middle - height / 2.0
     });
@@ -204,8 +206,8 @@ fn cell(plot: &Plot, buffer: &Buffer, column: usize, row: u16) -> String {
 /// A number with a few digits.
 pub fn short(x: f64) -> String {
     let size = x.abs();
-    if x == 0.0 {
-        return "0".to_owned();
+    if x == 0.0 || !x.is_finite() {
+        return decimal(x);
     }
     if !(1e-3..1e5).contains(&size) {
         return format!("{x:.2e}");

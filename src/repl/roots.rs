@@ -1,14 +1,14 @@
 //! `:root`: the zeros of an expression as text.
 
 use crate::diagnostic::code;
-use crate::interval::Decorated;
 use crate::interval::Interval;
 use crate::repl::newton::Root;
 use crate::repl::newton::Roots;
 use crate::repl::newton::Search;
+use crate::repl::plot::short;
 use crate::repl::state::State;
+use crate::repl::state::is_number;
 use crate::repl::state::trim;
-use crate::session::answer::width;
 use crate::session::expression::Messages;
 use crate::session::expression::Reading;
 use crate::session::expression::Snippet;
@@ -35,13 +35,18 @@ pub fn root(state: &mut State, arguments: &Snippet) -> Result<String, Messages> 
     }
     let boxes = expression.boxes(&state.bindings);
     let names = expression.graph.variables();
-    // What has no number yet is what is searched for.
-    let free: Vec<usize> = (0..boxes.len()).filter(|&i| !is_number(boxes[i])).collect();
+    // What has no number yet is what is searched for, and a variable alone whatever it has.
+    let variables = expression.variables();
+    let searched = |i: &usize| match variables[..] {
+        [only] => names[*i] == only,
+        _ => !is_number(boxes[*i]),
+    };
+    let free: Vec<usize> = (0..boxes.len()).filter(searched).collect();
     let variable = match free[..] {
         [only] => only,
         [] => {
             let fault = snippet.fault(code::NO_VALUE, "nothing varies here", "every variable is a number");
-            let help = match names.first() {
+            let help = match variables.first() {
                 Some(name) => format!("`{name}` has a number; give it a box, such as `{name} = [0, 1]`"),
                 None => "write an expression in x".to_owned(),
             };
@@ -56,12 +61,6 @@ pub fn root(state: &mut State, arguments: &Snippet) -> Result<String, Messages> 
     };
     let roots = Search::new(&expression.graph, expression.root, &boxes, variable).run(range);
     Ok(report(&roots, range))
-}
-
-/// A number, or the enclosure of one that is no binary fraction.
-fn is_number(value: Decorated) -> bool {
-    let interval = value.interval();
-    interval.is_empty() || interval.is_singleton() || interval.lo().next_up() == interval.hi()
 }
 
 fn report(roots: &Roots, range: Interval) -> String {
@@ -79,7 +78,7 @@ fn report(roots: &Roots, range: Interval) -> String {
         lines.push(format!("{other} in {range}: proved"));
     } else {
         lines.push("unknown, perhaps a root that is touched, a pole or a jump:".to_owned());
-        lines.extend(shown(&roots.unknown, |x| format!("  {x}  width {}", width(*x))));
+        lines.extend(shown(&roots.unknown, |x| format!("  {x}  width {}", short(x.width()))));
         lines.push(format!("{other} in the rest of {range}: proved"));
     }
     if roots.exhausted {
@@ -92,7 +91,7 @@ fn one(root: &Root) -> String {
     let bracket = root.bracket;
     let place = match bracket.is_singleton() {
         true => format!("  {bracket}  exact"),
-        false => format!("  {bracket}  width {}", width(bracket)),
+        false => format!("  {bracket}  width {}", short(bracket.width())),
     };
     match root.alone {
         Some(alone) => format!("{place}, the only one in {alone}"),

@@ -50,10 +50,9 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// The places of the variables whose boxes are not single numbers.
+    /// The places of the variables whose boxes are more than numbers.
     pub fn free(&self) -> Vec<usize> {
-        let wide = |place: &usize| !self.boxes[*place].interval().is_singleton();
-        (0..self.boxes.len()).filter(wide).collect()
+        (0..self.boxes.len()).filter(|&place| !is_number(self.boxes[place])).collect()
     }
 }
 
@@ -163,6 +162,12 @@ impl State {
             }
         }
     }
+}
+
+/// Whether a box is one number, or the enclosure of one that is no binary fraction.
+pub(super) fn is_number(value: Decorated) -> bool {
+    let interval = value.interval();
+    interval.is_empty() || interval.is_singleton() || interval.lo().next_up() == interval.hi()
 }
 
 /// A snippet without the blanks around it.

@@ -132,7 +132,7 @@ impl Answer {
         };
         line += &format!("{interval}  width {}  {}", width(interval), self.value.decoration());
         if choice == Choice::Auto && self.by != Extension::Natural {
-            line += &format!("  ({})", self.by);
+            line += &format!("  (narrowest: {})", self.by);
         }
         if let Some(reason) = expression.shortfall(boxes) {
             line += &format!("\n  {reason}");

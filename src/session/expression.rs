@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 use std::collections::HashMap;
+use std::fs::File;
 use std::io;
-use std::ops::Range;
+use std::io::Read;
 use std::path::Path;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,7 +18,6 @@ use crate::derive::Formula;
 use crate::derive::Output;
 use crate::derive::Rounding;
 use crate::derive::Spec;
-use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
 use crate::diagnostic::SourceMap;
@@ -50,78 +50,8 @@ use crate::syntax::ast::StatementKind;
 /// What variables are: boxes by name.
 pub type Bindings = BTreeMap<String, Decorated>;
 
-/// Messages with the sources that they point into.
-#[derive(Debug)]
-pub struct Messages {
-    pub sources: SourceMap,
-    pub diagnostics: Vec<Diagnostic>,
-}
-
-impl Messages {
-    /// Adds an edit to try to the last message.
-    pub fn help(mut self, text: impl Into<String>) -> Self {
-        if let Some(last) = self.diagnostics.last_mut() {
-            last.help.push(text.into());
-        }
-        self
-    }
-
-    /// As text for the user.
-    pub fn render(&self, colour: bool) -> String {
-        diagnostic::render(&self.sources, &self.diagnostics, colour)
-    }
-}
-
-impl From<Diagnostic> for Messages {
-    fn from(diagnostic: Diagnostic) -> Self {
-        Self { sources: SourceMap::default(), diagnostics: vec![diagnostic] }
-    }
-}
-
-/// Part of a text that is shown as a whole when a message points into the part.
-#[derive(Debug, Clone)]
-pub struct Snippet<'a> {
-    /// Of the text, in messages.
-    pub name: &'a str,
-    pub text: &'a str,
-    pub part: Range<usize>,
-}
-
-impl<'a> Snippet<'a> {
-    /// All of a text.
-    pub fn whole(name: &'a str, text: &'a str) -> Self {
-        Self { name, text, part: 0..text.len() }
-    }
-
-    /// A part of this part, given by its place in it.
-    pub fn within(&self, part: Range<usize>) -> Self {
-        Self { part: self.part.start + part.start..self.part.start + part.end, ..self.clone() }
-    }
-
-    pub fn as_str(&self) -> &'a str {
-        &self.text[self.part.clone()]
-    }
-
-    /// A message about this part alone.
-    pub fn fault(&self, code: &'static str, title: impl Into<String>, label: impl Into<String>) -> Messages {
-        let mut sources = SourceMap::default();
-        let file = sources.add(self.name, self.text);
-        let span = Span { file, start: self.part.start as u32, end: self.part.end as u32 };
-        Messages { sources, diagnostics: vec![Diagnostic::error(code, title).at(span, label)] }
-    }
-
-    /// The whole text as a source, and the part with blanks in place of what stands before, which keeps the offsets.
-    fn add_to(&self, sources: &mut SourceMap) -> (FileId, String) {
-        let padded = " ".repeat(self.part.start) + self.as_str();
-        (sources.add(self.name, self.text), padded)
-    }
-
-    /// Reads the part as an expression whose places are those of the whole text.
-    fn parse(&self, sources: &mut SourceMap) -> Result<Expr, Vec<Diagnostic>> {
-        let (file, padded) = self.add_to(sources);
-        syntax::parse_expression(file, &padded)
-    }
-}
+pub use crate::session::snippet::Messages;
+pub use crate::session::snippet::Snippet;
 
 /// How an expression is understood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,6 +68,8 @@ pub struct Workspace {
     sources: SourceMap,
     definitions: Module,
     files: CachedFiles,
+    /// What imported files define, as it is written there.
+    imported: Vec<(String, String)>,
 }
 
 impl Workspace {
@@ -166,7 +98,7 @@ impl Workspace {
     /// # Errors
     /// If the file or a definition in it cannot be read; then nothing has changed.
     pub fn load(&mut self, path: &Snippet, variables: &Bindings) -> Result<(), Messages> {
-        self.files.forget();
+        let before = self.files.replace(HashMap::new());
         let mut sources = self.sources.clone();
         let file = sources.add(path.name, path.text);
         let path_span = Span { file, start: path.part.start as u32, end: path.part.end as u32 };
@@ -177,7 +109,11 @@ impl Workspace {
             .retain(|statement| !matches!(&statement.kind, StatementKind::Import { path, .. } if *path == written));
         let kind = StatementKind::Import { path: written, path_span };
         definitions.statements.push(Statement { span: path_span, doc: Vec::new(), kind });
-        self.adopt(sources, file, definitions, variables, &[])
+        let adopted = self.adopt(sources, file, definitions, variables, &[]);
+        if adopted.is_err() {
+            self.files.replace(before);
+        }
+        adopted
     }
 
     /// Takes new definitions if an expression can be resolved among them.
@@ -198,6 +134,7 @@ impl Workspace {
             Ok(_) => {
                 self.sources = sources;
                 self.definitions = definitions;
+                self.imported = self.files.definitions();
                 Ok(())
             }
             Err(diagnostics) => Err(Messages { sources: probe, diagnostics }),
@@ -212,6 +149,11 @@ impl Workspace {
     /// The definitions as they were written, with the name that each defines; imports have none.
     pub fn definitions(&self) -> impl Iterator<Item = (Option<&str>, &str)> {
         self.definitions.statements.iter().map(|statement| (defined(statement), self.written(statement)))
+    }
+
+    /// The definitions of imported files, each with its name.
+    pub fn imported(&self) -> &[(String, String)] {
+        &self.imported
     }
 
     fn written(&self, statement: &Statement) -> &str {
@@ -279,83 +221,6 @@ impl Workspace {
             || program::BUILTINS.iter().any(|builtin| builtin.name == name)
     }
 
-    /// A value or a box: an interval literal of IEEE 1788 such as `[1, 2]`, `[entire]` or `3.56?1`, one whose ends are
-    /// expressions, or an expression, whose enclosure is taken.
-    ///
-    /// # Errors
-    /// If it cannot be read, is undefined, or its ends are not in order.
-    pub fn value(&self, snippet: &Snippet, variables: &Bindings) -> Result<Decorated, Messages> {
-        let written = snippet.as_str();
-        let start = written.len() - written.trim_start().len();
-        let snippet = &snippet.within(start..start + written.trim().len());
-        let text = snippet.as_str();
-        match text.parse::<Decorated>() {
-            Ok(value) => return Ok(value),
-            // Nothing but a literal can look like this, so its reader knows best what is wrong.
-            Err(error) if text.contains('?') || text.contains("]_") => {
-                let at = text.floor_char_boundary(error.position());
-                let fault = snippet.within(at..text.len()).fault(code::BAD_VALUE, error.message(), "from here");
-                return Err(fault.help("literals are such as `[1, 2]`, `[1, 2]_dac` or `3.56?1`"));
-            }
-            Err(_) => {}
-        }
-        let interval = match text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
-            Some(inner) => self.interval(snippet, inner, variables)?,
-            None => self.number(snippet, variables)?,
-        };
-        Ok(Decorated::new(interval))
-    }
-
-    /// A box whose ends are expressions; `inner` is what stands between its brackets.
-    fn interval(&self, snippet: &Snippet, inner: &str, variables: &Bindings) -> Result<Interval, Messages> {
-        let text = snippet.as_str();
-        let commas = top_level_commas(inner);
-        let (left, right) = match commas[..] {
-            [] => return self.number(&snippet.within(1..1 + inner.len()), variables),
-            [comma] => (1..1 + comma, comma + 2..1 + inner.len()),
-            _ => return Err(snippet.fault(code::BAD_VALUE, "a box has two ends", "write `[lower, upper]`")),
-        };
-        let lo = self.end(&snippet.within(left.clone()), f64::NEG_INFINITY, variables)?;
-        let hi = self.end(&snippet.within(right.clone()), f64::INFINITY, variables)?;
-        let (lo_text, hi_text) = (text[left].trim(), text[right].trim());
-        Interval::new(lo.0, hi.1).filter(|_| lo.0 <= hi.1).ok_or_else(|| {
-            let help = format!("write `[{hi_text}, {lo_text}]`");
-            snippet.fault(code::EMPTY_RANGE, "the ends of this box are not in order", "lower end first").help(help)
-        })
-    }
-
-    /// Bounds of one end of a box; nothing written, or `inf`, is the infinity on that side.
-    fn end(&self, snippet: &Snippet, infinity: f64, variables: &Bindings) -> Result<(f64, f64), Messages> {
-        match (snippet.as_str().trim().to_ascii_lowercase().as_str(), infinity > 0.0) {
-            ("" | "inf" | "+inf" | "infinity" | "+infinity", true) | ("" | "-inf" | "-infinity", false) => {
-                Ok((infinity, infinity))
-            }
-            _ => self.number(snippet, variables).map(|end| (end.lo(), end.hi())),
-        }
-    }
-
-    /// The enclosure of an expression that is defined for the given variables.
-    fn number(&self, snippet: &Snippet, variables: &Bindings) -> Result<Interval, Messages> {
-        let names: Vec<&str> = variables.keys().map(String::as_str).collect();
-        let expression = self.expression(snippet, &names, Reading::Value)?;
-        if expression.condition {
-            return Err(snippet.fault(
-                code::WRONG_KIND,
-                "a value is a number, and this is a condition",
-                "true or false",
-            ));
-        }
-        let value = expression.enclose(&expression.boxes(variables));
-        if value.interval().is_empty() || value.decoration() < Decoration::Def {
-            return Err(snippet.fault(
-                code::NOT_FINITE,
-                "this value is not defined",
-                format!("its enclosure is {value}"),
-            ));
-        }
-        Ok(value.interval())
-    }
-
     /// Whether a name can be given a value: it must be a name and none that the language needs.
     ///
     /// # Errors
@@ -375,13 +240,33 @@ impl Workspace {
     }
 }
 
+/// Definitions beyond this are refused: what is meant is another file, or a device that never ends.
+const MAX_BYTES: u64 = 1 << 26;
+
 /// Reads files once, so that a definition keeps its meaning until the file is loaded again.
 #[derive(Debug, Default)]
 struct CachedFiles(Mutex<HashMap<PathBuf, String>>);
 
 impl CachedFiles {
-    fn forget(&self) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    /// Takes other texts for what has been read; those that it had.
+    fn replace(&self, texts: HashMap<PathBuf, String>) -> HashMap<PathBuf, String> {
+        std::mem::replace(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner), texts)
+    }
+
+    /// What the files define, sorted by name.
+    fn definitions(&self) -> Vec<(String, String)> {
+        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut found = Vec::new();
+        for text in known.values() {
+            let (module, _) = syntax::parse(FileId(0), text);
+            for statement in &module.statements {
+                let span = statement.span.start as usize..statement.span.end as usize;
+                let written = text.get(span).unwrap_or_default();
+                found.extend(defined(statement).map(|name| (name.to_owned(), written.to_owned())));
+            }
+        }
+        found.sort();
+        found
     }
 }
 
@@ -391,7 +276,11 @@ impl Importer for CachedFiles {
         if let Some(text) = known.get(path) {
             return Ok(text.clone());
         }
-        let text = FileSystem.read(path)?;
+        let mut text = String::new();
+        File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
+        if text.len() as u64 > MAX_BYTES {
+            return Err(io::Error::other(format!("larger than {} MiB", MAX_BYTES >> 20)));
+        }
         known.insert(path.to_owned(), text.clone());
         Ok(text)
     }
@@ -429,21 +318,6 @@ fn is_condition(expr: &Expr) -> bool {
         ExprKind::Relation { .. } | ExprKind::And(_) | ExprKind::Or(_) | ExprKind::Not(_) => true,
         _ => false,
     }
-}
-
-/// Where the commas outside of all brackets stand.
-fn top_level_commas(text: &str) -> Vec<usize> {
-    let mut depth = 0;
-    let mut commas = Vec::new();
-    for (at, byte) in text.bytes().enumerate() {
-        match byte {
-            b'(' | b'[' => depth += 1,
-            b')' | b']' => depth -= 1,
-            b',' if depth == 0 => commas.push(at),
-            _ => {}
-        }
-    }
-    commas
 }
 
 /// A resolved expression; its graph holds nothing that it does not need, and one output, `f`.
@@ -560,10 +434,6 @@ mod tests {
         values.iter().map(|&(name, lo, hi)| (name.to_owned(), interval(lo, hi))).collect()
     }
 
-    fn said(result: Result<impl std::fmt::Debug, Messages>) -> String {
-        result.unwrap_err().render(false)
-    }
-
     #[test]
     fn expressions_are_enclosed_over_boxes() {
         let mut workspace = Workspace::default();
@@ -571,7 +441,7 @@ mod tests {
         workspace.define(&Snippet::whole("line 1", "fn f(u) = u^2 - 1"), &given).unwrap();
         let expression = workspace.expression(&Snippet::whole("line 2", "f(x)"), &["x"], Reading::Value).unwrap();
         assert_eq!(expression.variables(), ["x"]);
-        assert_eq!(expression.enclose(&expression.boxes(&given)).to_string(), "[-1, 3] com");
+        assert_eq!(expression.enclose(&expression.boxes(&given)).to_string(), "[-1, 3]_com");
         assert_eq!(expression.shortfall(&expression.boxes(&given)), None);
     }
 
@@ -588,37 +458,6 @@ mod tests {
         workspace.define(&Snippet::whole("line 4", "let a = 3"), &none).unwrap();
         let value = workspace.value(&Snippet::whole("line 5", "a"), &none).unwrap();
         assert_eq!(value.interval(), Interval::point(3.0));
-    }
-
-    #[test]
-    fn values_are_boxes_or_constants() {
-        let workspace = Workspace::default();
-        let value = |text| workspace.value(&Snippet::whole("value of x", text), &Bindings::new());
-        for (text, lo, hi) in [
-            ("[1, 2]", 1.0, 2.0),
-            (" [ -1/2 , 2^3 ] ", -0.5, 8.0),
-            ("0x1.8p+1", 3.0, 3.0),
-            ("[0, inf]", 0.0, f64::INFINITY),
-            ("[,1]", f64::NEG_INFINITY, 1.0),
-            ("[entire]", f64::NEG_INFINITY, f64::INFINITY),
-            ("[min(1, 2), max(3, 4)]", 1.0, 4.0),
-            ("[1.5]", 1.5, 1.5),
-            ("3.5?5", 3.0, 4.0),
-        ] {
-            assert_eq!(value(text).unwrap().interval(), Interval::new(lo, hi).unwrap(), "{text}");
-        }
-        assert!(value("[empty]").unwrap().interval().is_empty());
-        assert_eq!(value("[1, 2]_def").unwrap().to_string(), "[1, 2] def");
-        let tenth = value("0.1").unwrap().interval();
-        assert_eq!((tenth.lo(), tenth.hi()), (0.1f64.next_down(), 0.1));
-        assert_eq!(value("pi").unwrap().interval(), Interval::PI);
-        assert!(said(value("[2, 1]")).contains("write `[1, 2]`"));
-        assert!(said(value("[1, 1 +]")).contains("value of x:1:"));
-        for wrong in
-            ["", "[1, 2, 3]", "1/0", "[sqrt(-1), 2]", "y", "[1, 2", "[inf, inf]", "[1; 2]", "3?x", "[1, 2]_top"]
-        {
-            assert!(value(wrong).is_err(), "{wrong}");
-        }
     }
 
     #[test]
@@ -640,7 +479,7 @@ mod tests {
     fn equations_have_zeros() {
         let mut workspace = Workspace::default();
         workspace.define(&Snippet::whole("line 1", "fn g(u) = u^2 - 2"), &Bindings::new()).unwrap();
-        for (text, expected) in [("x^2 = 2", "[-2, 2] com"), ("g", "[-2, 2] com"), ("(g(x) = 0)", "[-2, 2] com")] {
+        for (text, expected) in [("x^2 = 2", "[-2, 2]_com"), ("g", "[-2, 2]_com"), ("(g(x) = 0)", "[-2, 2]_com")] {
             let expression = workspace.expression(&Snippet::whole("line 2", text), &["x"], Reading::Zero).unwrap();
             let boxes = expression.boxes(&bindings(&[("x", 0.0, 2.0)]));
             assert_eq!(expression.enclose(&boxes).to_string(), expected, "{text}");

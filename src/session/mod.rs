@@ -6,7 +6,9 @@ mod backend;
 pub mod expression;
 mod load;
 mod save;
+mod snippet;
 mod stages;
+mod value;
 
 use std::path::Path;
 

@@ -263,7 +263,7 @@ pub fn zoomed_picture() -> Case {
     assert!(single.wrong + single.lost + single.invented > 300, "{single}; {double}");
     survey.case(
         "the same sphere through a window of 5e-7",
-        "Values of 1e4 cancel: f32 knows f to 1e-3, the whole window is 1e-6 deep.",
+        "Values of 1e4 cancel: f32 knows f to 1e-3, where the window is 5e-7 wide; two roots behind one another lie between two samples.",
         [single, double],
     )
 }

@@ -153,7 +153,7 @@ pub fn heart() -> Case {
     assert!(single.lost > 100 && double.lost > 100, "{single}; {double}");
     survey.case(
         "Heart where its gradient vanishes, Newton's method",
-        "On the ellipse z = 0 the root is triple, and the tangents of Newton's method lead anywhere.",
+        "On the ellipse z = 0 the root is triple; there, at the dent and at the tip slopes die away with f, and tangents lead anywhere.",
         [single, double],
     )
 }

@@ -101,12 +101,15 @@ impl<T: Plain> Quartic<T> {
         }
     }
 
-    /// Newton's method from the enclosing sphere with steps of at most 0.15, 60 of them; the caller accepts or discards.
-    pub fn clamped_newton(&self) -> T {
+    /// Newton's method from the enclosing sphere with steps of at most 0.15, 60 of them; the caller accepts or discards. If
+    /// wanted, every step outside the torus goes forward.
+    pub fn clamped_newton(&self, forward: bool) -> T {
         let most = T::ratio(15, 100);
         let mut t = T::int(0);
         for _ in 0..60 {
-            let step = self.value(t) / self.slope(t);
+            let value = self.value(t);
+            let step = value / self.slope(t);
+            let step = if forward && value > T::int(0) && step > T::int(0) { -step } else { step };
             t = t - if step > most {
                 most
             } else if step < -most {

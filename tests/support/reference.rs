@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use fastrand::Rng;
 use imp::interval::Interval;
+use rayon::prelude::*;
 
 const INF: f64 = f64::INFINITY;
 
@@ -128,8 +129,8 @@ impl Operation {
     /// How many units in the last place an end may lie outside the tightest one.
     pub fn allowance(self) -> u64 {
         match self {
-            Pow | Exp | Exp2 | Exp10 | Expm1 | Exp2m1 | Exp10m1 | Ln | Log2 | Log10 | Log1p | Log2p1 | Log10p1 | Sin
-            | Cos | Tan | Asin | Acos | Atan | Atan2 | Sinh | Cosh | Tanh | Asinh | Acosh | Atanh => 2,
+            Pow | Exp | Exp2 | Exp10 | Expm1 | Exp2m1 | Exp10m1 | Ln | Log2 | Log10 | Log1p | Log2p1 | Log10p1
+            | Sin | Cos | Tan | Asin | Acos | Atan | Atan2 | Sinh | Cosh | Tanh | Asinh | Acosh | Atanh => 2,
             _ => 0,
         }
     }
@@ -225,9 +226,13 @@ impl Operation {
         let mut widen = |(down, up): Range| hull = (hull.0.min(down), hull.1.max(up));
         for piece in self.pieces(x) {
             for corner in 0..1 << piece.len() {
-                let args: Vec<f64> =
-                    piece.iter().enumerate().map(|(i, part)| if corner >> i & 1 == 0 { part.0 } else { part.1 }).collect();
-                let removed = matches!(self, Atan2 | Modulo) && args.iter().all(|x| x.is_finite()) && !self.is_defined(&args);
+                let args: Vec<f64> = piece
+                    .iter()
+                    .enumerate()
+                    .map(|(i, part)| if corner >> i & 1 == 0 { part.0 } else { part.1 })
+                    .collect();
+                let removed =
+                    matches!(self, Atan2 | Modulo) && args.iter().all(|x| x.is_finite()) && !self.is_defined(&args);
                 if !removed && let Some(bracket) = oracle.bracket(self, &args) {
                     widen(bracket);
                 }
@@ -326,7 +331,9 @@ pub const REVERSE: &[Reverse] = &[
         name: "MulRevToPair",
         forward: Mul,
         unknown: 1,
-        apply: |b, c, x| b.mul_rev_to_pair(c).map(|part| part.intersect(x)).into_iter().fold(Interval::EMPTY, Interval::hull),
+        apply: |b, c, x| {
+            b.mul_rev_to_pair(c).map(|part| part.intersect(x)).into_iter().fold(Interval::EMPTY, Interval::hull)
+        },
     },
     Reverse { name: "PowRev1", forward: Pow, unknown: 0, apply: |b, c, x| b.pow_rev1(c, x) },
     Reverse { name: "PowRev2", forward: Pow, unknown: 1, apply: |a, c, x| a.pow_rev2(c, x) },
@@ -406,6 +413,14 @@ pub struct Tally {
 }
 
 impl Tally {
+    /// Runs cases in parallel, in chunks that have a seed of their own each: the arguments do not depend on the threads.
+    pub fn in_chunks(cases: u64, chunk: u64, work: impl Fn(u64, u64) -> Self + Sync) -> Self {
+        (0..cases.div_ceil(chunk))
+            .into_par_iter()
+            .map(|seed| work(seed, chunk.min(cases - seed * chunk)))
+            .reduce(Self::default, Self::merge)
+    }
+
     /// Runs seeded random cases.
     pub fn of(op: Operation, seed: u64, cases: u64, oracle: &mut impl Oracle) -> Self {
         let mut tally = Self { cases, ..Self::default() };
@@ -446,7 +461,9 @@ impl Tally {
         let tightest = op.tightest(x, oracle);
         if tightest.is_none() || !x.iter().all(|x| x.is_singleton()) {
             let point: Vec<f64> = x.iter().map(|&x| member(rng, x)).collect();
-            if op.is_defined(&point) && let Some((down, up)) = oracle.bracket(op, &point) {
+            if op.is_defined(&point)
+                && let Some((down, up)) = oracle.bracket(op, &point)
+            {
                 self.members += 1;
                 // An end is a `f64`: it is at most the value if and only if it is at most the value rounded down.
                 if !(y.lo() <= down && up <= y.hi()) {
@@ -472,7 +489,7 @@ impl Tally {
         (self.lower, self.upper) = (self.lower.max(lower), self.upper.max(upper));
     }
 
-    pub fn merge(self, other: Self) -> Self {
+    fn merge(self, other: Self) -> Self {
         let wider = self.lower.max(self.upper) >= other.lower.max(other.upper);
         Self {
             cases: self.cases + other.cases,

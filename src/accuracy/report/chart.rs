@@ -335,7 +335,7 @@ impl Axis {
         let (least, most) = if least <= most { (least, most) } else { (-1.0, 0.0) };
         let margin = 0.06 * (most - least).max(0.5);
         let has_zero = numbers.into_iter().any(|n| n == 0.0);
-        let zero = has_zero.then(|| least - 2.5 * margin);
+        let zero = has_zero.then_some(least - 2.5 * margin);
         let (from, to) = (zero.unwrap_or(least) - margin, most + margin);
         // 1, 2, 5 in each decade while there are few of them, else every so many decades.
         let decades = (most - least).max(0.5);
@@ -430,7 +430,13 @@ mod tests {
         };
         let points = vec![point(1e-3, 9.0, Some("1 left")), point(0.0, 20.0, None), point(0.1, 2.0, Some("2 <right>"))];
         let series = vec![Series { name: "imp".to_owned(), color: 0, marker: Marker::Circle, points }];
-        let chart = Chart { title: "T".to_owned(), x: "error".to_owned(), y: "ms".to_owned(), series, fronts: vec!["all".to_owned()] };
+        let chart = Chart {
+            title: "T".to_owned(),
+            x: "error".to_owned(),
+            y: "ms".to_owned(),
+            series,
+            fronts: vec!["all".to_owned()],
+        };
         let svg = chart.svg().unwrap();
         assert!(svg.contains("1 left") && svg.contains("2 &lt;right&gt;") && svg.ends_with("</svg>\n"));
         assert_eq!(svg.matches("<svg").count(), 1);

@@ -27,6 +27,10 @@ fn number(row: &Enclosed, of: impl Fn(&Measured) -> Option<f64>) -> Cell {
     row.measured().and_then(of).into()
 }
 
+fn end(row: &Enclosed, of: impl Fn(&Measured) -> f64) -> Cell {
+    row.measured().map_or(Cell::Missing, |measured| Cell::Exact(of(measured)))
+}
+
 const fn field(
     key: &'static str,
     head: &'static str,
@@ -41,24 +45,38 @@ const FIELDS: &[Field<Enclosed>] = &[
     field("number", "#", Terminal, "the place in the order of excess, then time; charts use the same numbers", |row| {
         Cell::Count(row.number as u64)
     }),
-    field("pareto", "front", Terminal, "marked if nothing else has both a smaller excess and a smaller time", |row| {
-        Cell::Mark(row.measured().is_some_and(|m| m.pareto))
+    field(
+        "pareto",
+        "front",
+        Terminal,
+        "marked if, of what is rounded outward, nothing else has both a smaller excess and a smaller time",
+        |row| Cell::Mark(row.measured().is_some_and(|m| m.pareto)),
+    ),
+    field(
+        "name",
+        "way",
+        Terminal,
+        "the extension, or the compiled kernel, and into how many parts each input is cut",
+        |row| Cell::Text(row.name.clone()),
+    ),
+    field("engine", "engine", File, "reference arithmetic, or a compiled kernel", |row| {
+        Cell::Text(row.engine.to_owned())
     }),
-    field("name", "way", Terminal, "the extension, or the compiled kernel, and into how many parts each input is cut", |row| {
-        Cell::Text(row.name.clone())
-    }),
-    field("engine", "engine", File, "reference arithmetic, or a compiled kernel", |row| Cell::Text(row.engine.to_owned())),
     field("arithmetic", "arithmetic", File, "the extension", |row| Cell::Text(row.arithmetic.to_owned())),
     field("precision", "precision", File, "the format", |row| Cell::Text(row.precision.to_owned())),
     field("rounding", "rounding", File, "with `nearest` values may be lost", |row| Cell::Text(row.rounding.to_owned())),
     field("parts", "parts", File, "parts into which each input is cut", |row| Cell::Count(row.parts.into())),
     field("boxes", "boxes", Terminal, "boxes that are evaluated", |row| Cell::Count(row.boxes)),
-    field("lo", "lower end", Page, "of the hull of all boxes' enclosures", |row| number(row, |m| Some(m.lo))),
-    field("hi", "upper end", Page, "of the hull of all boxes' enclosures", |row| number(row, |m| Some(m.hi))),
+    field("lo", "lower end", Page, "of the hull of all boxes' enclosures", |row| end(row, |m| m.lo)),
+    field("hi", "upper end", Page, "of the hull of all boxes' enclosures", |row| end(row, |m| m.hi)),
     field("width", "width", Terminal, "of that hull", |row| number(row, |m| Some(m.width))),
-    field("excess_least", "excess, least", Page, "the width less the greatest width that the true range may have", |row| {
-        number(row, |m| Some(m.excess[0]))
-    }),
+    field(
+        "excess_least",
+        "excess, least",
+        Page,
+        "the width less the greatest width that the true range may have",
+        |row| number(row, |m| Some(m.excess[0])),
+    ),
     field("excess_most", "excess", Terminal, "the width less the least width that the true range may have", |row| {
         number(row, |m| Some(m.excess[1]))
     }),
@@ -69,9 +87,13 @@ const FIELDS: &[Field<Enclosed>] = &[
         "`yes` if all values that are known to be taken lie inside; only rounding to nearest may say no",
         |row| row.measured().map_or(Cell::Missing, |m| Cell::Text(if m.holds { "yes" } else { "NO" }.to_owned())),
     ),
-    field("decoration", "decoration", Page, "what the extension proves of the function on the box (IEEE 1788)", |row| {
-        row.measured().and_then(|m| m.decoration.clone()).map_or(Cell::Missing, Cell::Text)
-    }),
+    field(
+        "decoration",
+        "decoration",
+        Page,
+        "what the extension proves of the function on the box (IEEE 1788)",
+        |row| row.measured().and_then(|m| m.decoration.clone()).map_or(Cell::Missing, Cell::Text),
+    ),
     field(
         "operations",
         "ops/box",
@@ -124,14 +146,14 @@ impl Report for ExpressionCost {
             x: "excess: width of the enclosure less that of the true range".to_owned(),
             y: "microseconds for all boxes".to_owned(),
             series: kinds.into_iter().enumerate().map(series).collect(),
-            fronts: vec!["all that hold the range".to_owned()],
+            fronts: vec!["what is rounded outward".to_owned()],
         }]
     }
 
     fn heading(&self) -> String {
         format!(
             "{} with {}\ntrue range: {}\nmedian of {} runs of wall clock on a machine that may do other work; ratio: time over that \
-             of `{}`; front: * if nothing is both faster and tighter\n",
+             of `{}`; front: * if nothing rounded outward is both faster and tighter\n",
             self.expression,
             self.boxes(),
             self.range_text(),
@@ -180,8 +202,11 @@ impl ExpressionCost {
         match &self.range {
             None => "not known: the expression was defined at no point that was tried".to_owned(),
             Some(range) => {
-                let [lo, hi] = [range.lo, range.hi].map(|[a, b]| format!("[{}, {}]", decimal(a), decimal(b)));
-                format!("from within {lo} to within {hi}")
+                let end = |[a, b]: [f64; 2]| match a == b {
+                    true => decimal(a),
+                    false => format!("a number in [{}, {}]", decimal(a), decimal(b)),
+                };
+                format!("from {} to {}", end(range.lo), end(range.hi))
             }
         }
     }

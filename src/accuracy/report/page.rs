@@ -7,10 +7,10 @@ use maud::Markup;
 use maud::PreEscaped;
 use maud::html;
 
+use crate::accuracy::number::brief;
 use crate::accuracy::picture::LEGEND;
 use crate::accuracy::report::Report;
 use crate::accuracy::report::failed;
-use crate::accuracy::number::brief;
 use crate::accuracy::report::scene::kind;
 use crate::accuracy::report::table::Cell;
 use crate::accuracy::report::table::Shown;
@@ -53,7 +53,10 @@ pub fn of_scene(cost: &SceneCost) -> Result<String, Diagnostic> {
                 "claims of proof that the reference contradicts, over all levels: {contradicted}. {}",
                 if contradicted == 0 { "So it must be." } else { "This is a bug in Imp; please report it." }
             )),
-            ("Domain", format!("its longest side has {} units; errors of 1 are errors of that length.", brief(cost.side))),
+            ("Domain", match cost.dimension {
+                2 => "of a plane scene: the error is the share of wrong pixels.".to_owned(),
+                _ => format!("its longest side has {} units; a depth error of that length is an error of 1.", brief(cost.side)),
+            }),
         ]))
         (charts(cost)?)
         (table(&cost.table()))

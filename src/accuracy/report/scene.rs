@@ -214,7 +214,7 @@ impl Report for SceneCost {
                 x: "median bracket in the scene's units".to_owned(),
                 y: "milliseconds".to_owned(),
                 series: self.series(|m| m.errors.bracket_median, |m| m.pareto_bracket, |_| false),
-                fronts: vec!["all levels".to_owned()],
+                fronts: vec!["rounded outward".to_owned()],
             });
         } else {
             charts[0].x = "share of wrong pixels".to_owned();

@@ -29,6 +29,8 @@ pub enum Cell {
     Text(String),
     Count(u64),
     Number(f64),
+    /// A number of which every digit counts.
+    Exact(f64),
     /// Marked or not.
     Mark(bool),
     /// No such number, or none that means anything here.
@@ -48,6 +50,7 @@ impl Cell {
             Cell::Text(text) => text.clone(),
             Cell::Count(count) => count.to_string(),
             Cell::Number(number) => brief(*number),
+            Cell::Exact(number) => decimal(*number),
             Cell::Mark(marked) => if *marked { "*" } else { "" }.to_owned(),
             Cell::Missing => "-".to_owned(),
         }
@@ -58,7 +61,7 @@ impl Cell {
         match self {
             Cell::Text(text) => text.clone(),
             Cell::Count(count) => count.to_string(),
-            Cell::Number(number) => decimal(*number),
+            Cell::Number(number) | Cell::Exact(number) => decimal(*number),
             Cell::Mark(marked) => u8::from(*marked).to_string(),
             Cell::Missing => String::new(),
         }
@@ -69,7 +72,7 @@ impl Cell {
         match self {
             Cell::Text(_) | Cell::Missing => None,
             Cell::Count(count) => Some(*count as f64),
-            Cell::Number(number) => Some(*number),
+            Cell::Number(number) | Cell::Exact(number) => Some(*number),
             Cell::Mark(marked) => Some(f64::from(u8::from(*marked))),
         }
     }

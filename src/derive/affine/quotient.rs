@@ -3,7 +3,6 @@
 
 use crate::derive::affine::Af1;
 use crate::derive::affine::Operand;
-use crate::derive::affine::SYMBOLS;
 use crate::derive::affine::algebraic::reciprocal;
 use crate::derive::affine::algebraic::reciprocals;
 use crate::derive::affine::centre_and_radius;
@@ -40,8 +39,8 @@ fn remainder(b: &mut Builder, x: Af1, y: Af1, c: Lane) -> Af1 {
     let error = b.add(x.error, gap);
     let error = b.weighted(size, y.error, error);
     let mut coefficients = x.coefficients;
-    for i in 0..SYMBOLS {
-        coefficients[i] = b.weighted(minus_c, y.coefficients[i], coefficients[i]);
+    for (coefficient, &other) in coefficients.iter_mut().zip(&y.coefficients) {
+        *coefficient = b.weighted(minus_c, other, *coefficient);
     }
     // Each rounds once, by epsilon of its size.
     let (spread_x, spread_y) = (x.spread(b), y.spread(b));

@@ -89,7 +89,12 @@ fn holds(line: &Linear, offset: Interval, x: f64, value: &BigFloat) -> bool {
     }
     let product = big(line.slope()).mul_full_prec(&big(x));
     // astro-float gets differences with 0 wrong at full precision.
-    if product.is_zero() { contains(offset, value) } else { contains(offset, &value.sub_full_prec(&product)) }
+    let difference = match (value.is_zero(), product.is_zero()) {
+        (true, _) => product.neg(),
+        (_, true) => value.clone(),
+        _ => value.sub_full_prec(&product),
+    };
+    contains(offset, &difference)
 }
 
 /// Places across `x`, its ends among them.
@@ -156,8 +161,8 @@ fn bounds_rounded_carelessly_are_noticed() {
     }
 }
 
-/// On no interval is there a band narrower by more than a hundredth, as far as samples can tell; and half the width has a
-/// quarter of the band.
+/// On no interval is there a band narrower by more than a hundredth, as far as samples can tell; and half the width
+/// has a quarter of the band.
 #[test]
 fn bands_are_narrow() {
     let mut cc = Consts::new().unwrap();

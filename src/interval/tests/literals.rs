@@ -66,6 +66,23 @@ fn every_form_reads() {
 }
 
 #[test]
+fn long_numbers_are_exact() {
+    let zeros = "0".repeat(3000);
+    for (text, x) in [
+        (format!("[1{zeros}e-3000]"), Interval::ONE),
+        (format!("[0.{zeros}25e3001]"), set(2.5, 2.5)),
+        (format!("[1{zeros}/2{zeros}]"), set(0.5, 0.5)),
+        (format!("[1.{zeros}1]"), set(1.0, 1f64.next_up())),
+        (format!("[-1{zeros}, 1.{zeros}]"), set(-INF, 1.0)),
+        ("[9e1999, 1e2000]".to_owned(), set(MAX, INF)),
+        ("[9e2000, 1e2001]".to_owned(), set(MAX, INF)),
+        ("[1e-2001, 9e-2001]".to_owned(), set(0.0, TINY)),
+    ] {
+        assert_eq!(text.parse(), Ok(x), "{x}");
+    }
+}
+
+#[test]
 fn decorations_read() {
     use Decoration::{Com, Dac, Def, Trv};
     for (text, x, decoration) in [

@@ -22,17 +22,20 @@ fn members<T: Clone + PartialOrd>(lo: T, hi: T, zero: T) -> Vec<T> {
     members
 }
 
+/// The lesser or the greater of two values.
+type Pick<T> = fn(T, T) -> T;
+
 /// f* = [min_p max_i f, max_p min_i f] and f** = [max_i min_p f, min_i max_p f], where each variable comes with its
 /// members and says whether it is proper.
 fn extensions<T: Clone + Ord>(x: (&[T], bool), y: (&[T], bool), f: impl Fn(&T, &T) -> T) -> [(T, T); 2] {
     // `pick` of the outer variable over `pick` of the inner one.
-    let nested = |x_outside: bool, outer: fn(T, T) -> T, inner: fn(T, T) -> T| {
+    let nested = |x_outside: bool, outer: Pick<T>, inner: Pick<T>| {
         let (a, b) = if x_outside { (x.0, y.0) } else { (y.0, x.0) };
         let value = |a: &T, b: &T| if x_outside { f(a, b) } else { f(b, a) };
         let row = |a: &T| b.iter().map(|b| value(a, b)).reduce(inner).unwrap();
         a.iter().map(row).reduce(outer).unwrap()
     };
-    let (min, max): (fn(T, T) -> T, fn(T, T) -> T) = (T::min, T::max);
+    let (min, max): (Pick<T>, Pick<T>) = (T::min, T::max);
     match (x.1, y.1) {
         (true, true) => [(); 2].map(|()| (nested(true, min, min), nested(true, max, max))),
         (false, false) => [(); 2].map(|()| (nested(true, max, max), nested(true, min, min))),

@@ -10,14 +10,10 @@ mod reference;
 use std::time::Instant;
 
 use mpfr::Mpfr;
-use rayon::prelude::*;
 use reference::HEADER;
 use reference::Operation;
 use reference::REVERSE;
 use reference::Tally;
-
-/// Cases that one task runs, with a seed of its own: the arguments do not depend on the number of threads.
-const CHUNK: u64 = 5_000;
 
 fn main() {
     let mut words = std::env::args().skip(1);
@@ -30,10 +26,7 @@ fn main() {
     let start = Instant::now();
     let (mut escapes, mut wide) = (Vec::new(), Vec::new());
     let run = |name: &str, work: &(dyn Fn(u64, u64) -> Tally + Sync)| {
-        let chunks = (0..cases.div_ceil(CHUNK)).into_par_iter();
-        let tally = chunks
-            .map(|chunk| work(chunk, CHUNK.min(cases - chunk * CHUNK)))
-            .reduce(Tally::default, Tally::merge);
+        let tally = Tally::in_chunks(cases, 5_000, work);
         println!("{}", tally.row(name));
         tally
     };

@@ -112,8 +112,8 @@ impl Oracle for Mpfr {
             PowRatio(p, q) => {
                 // x^|p| is exact with 53 |p| bits, and 1/t decreases on either side of 0.
                 let power = Float::with_val(53 * p.unsigned_abs(), (&a).pow(p.unsigned_abs()));
-                let [down, up] = [Round::Down, Round::Up]
-                    .map(|round| Float::with_val_round(PRECISION, power.root_ref(q), round).0);
+                let [down, up] =
+                    [Round::Down, Round::Up].map(|round| Float::with_val_round(PRECISION, power.root_ref(q), round).0);
                 if p > 0 {
                     return between(&down, &up);
                 }

@@ -28,7 +28,12 @@ fn main() {
 }
 
 /// Times both sides on the same boxes and prints a row; without a peer, Imp alone.
-fn compare<P: Fn(&[Peer; 3]) -> Peer>(name: &str, ranges: Ranges, ours: impl Fn(&[Interval; 3]) -> Interval, peer: Option<P>) {
+fn compare<P: Fn(&[Peer; 3]) -> Peer>(
+    name: &str,
+    ranges: Ranges,
+    ours: impl Fn(&[Interval; 3]) -> Interval,
+    peer: Option<P>,
+) {
     let mut rng = Rng::with_seed(1);
     let ends: Vec<[(f64, f64); 3]> = (0..ITEMS)
         .map(|_| {
@@ -39,7 +44,8 @@ fn compare<P: Fn(&[Peer; 3]) -> Peer>(name: &str, ranges: Ranges, ours: impl Fn(
         })
         .collect();
     let boxes: Vec<_> = ends.iter().map(|x| x.map(|(lo, hi)| Interval::new(lo, hi).expect("a range"))).collect();
-    let peer_boxes: Vec<_> = ends.iter().map(|x| x.map(|(lo, hi)| inari::interval!(lo, hi).expect("a range"))).collect();
+    let peer_boxes: Vec<_> =
+        ends.iter().map(|x| x.map(|(lo, hi)| inari::interval!(lo, hi).expect("a range"))).collect();
 
     let mut times = [Vec::new(), Vec::new()];
     for _ in 0..ROUNDS {
