@@ -4,7 +4,7 @@
 //!     cargo run --release --example seed_tables            # all of them
 //!     cargo run --release --example seed_tables -- newton  # one: `march`, `affine` or `newton`
 //!
-//! Everything runs on one thread; a time is the least of seven runs. On Linux it is the processor's time of the threads
+//! Everything runs on one thread; a time is the least of three runs. On Linux it is the processor's time of the threads
 //! that search, which a busy machine disturbs least; elsewhere it is the clock's. Evaluations are exact counts.
 
 use std::error::Error;
@@ -29,7 +29,7 @@ use imp::render::Renderer;
 use imp::render::Stop;
 use imp::session;
 
-const REPEATS: u32 = 7;
+const REPEATS: u32 = 3;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let wanted = std::env::args().nth(1);
