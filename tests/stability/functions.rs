@@ -26,7 +26,7 @@ fn holds(interval: Interval, number: &BigFloat) -> bool {
     &lo <= number && number <= &hi
 }
 
-/// Reduction by the rounded period, as programs without a library do it.
+/// Reduction by the rounded period, as shaders and fast-math modes do it; the libraries of C and Rust do better.
 macro_rules! reduced_sine {
     ($type:ident, $x:expr) => {{
         let period = std::$type::consts::TAU;
@@ -48,9 +48,9 @@ fn sine(name: &'static str, x: f64) -> Case {
     assert!(off(single.into()) && off(double), "{single}, {double}");
     Case {
         name,
-        why: "Less a multiple of the rounded period 2 pi, as f32 and f64 do it here, nothing is left: its error, times the number of periods, exceeds a period. Imp reduces with as many digits of pi as it takes.",
-        single: if single.is_finite() { format!("{single:.3}") } else { "not finite".to_owned() },
-        double: format!("{double:.3}"),
+        why: "Less a multiple of the rounded period 2 pi, as shaders and fast-math modes reduce (good libraries do better), nothing is left: its error, times the number of periods, exceeds a period. Imp reduces with as many digits of pi as it takes.",
+        single: if single.is_finite() { format!("{single:.3} by period") } else { "not finite".to_owned() },
+        double: format!("{double:.3} by period"),
         imp: said.to_string(),
         cost: String::new(),
     }
