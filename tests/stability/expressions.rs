@@ -24,7 +24,8 @@ fn rump_in<T: Plain>() -> f64 {
 
 pub fn rump() -> Case {
     let (single, double) = (rump_in::<f32>(), rump_in::<f64>());
-    assert!(!(single.abs() < 1e20) && !(double.abs() < 1e20), "{single}, {double}");
+    let wild = |y: f64| y.is_nan() || y.abs() >= 1e20;
+    assert!(wild(single) && wild(double), "{single}, {double}");
     let formula = Formula::new(&RUMP.replace('a', "x").replace('b', "y"));
     let at = [point(77617.0), point(33096.0)];
     let said = formula.reference(&at).interval();

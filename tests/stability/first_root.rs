@@ -59,8 +59,11 @@ fn survey() -> Survey {
     survey
 }
 
+/// A plain root finder: from the ray and the bounds of its parameter to the root that it takes for the first.
+type Find = fn(&Ray, [f64; 2]) -> Option<f64>;
+
 /// What a method of both formats makes of its rays: more than one in 33 is at fault.
-fn found(survey: &Survey, find: [fn(&Ray, [f64; 2]) -> Option<f64>; 2]) -> [Faults; 2] {
+fn found(survey: &Survey, find: [Find; 2]) -> [Faults; 2] {
     let found = find.map(|find| faults(&survey.looks, 1e-2, find));
     let least = survey.tally.proved / 33;
     assert!(found.iter().all(|faults| faults.lost + faults.wrong > least), "{found:?}");

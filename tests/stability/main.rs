@@ -61,9 +61,12 @@ cases! {
         derivative_bisection clamped_newton;
 }
 
+/// The outcome of a case, shared by those who ask for it.
+type Outcome = Arc<OnceLock<Case>>;
+
 /// What came out of a case, which runs once, whether its own test asks first or the table.
-fn outcome(key: &'static str, run: fn() -> Case) -> Arc<OnceLock<Case>> {
-    static OUTCOMES: LazyLock<Mutex<HashMap<&str, Arc<OnceLock<Case>>>>> = LazyLock::new(Default::default);
+fn outcome(key: &'static str, run: fn() -> Case) -> Outcome {
+    static OUTCOMES: LazyLock<Mutex<HashMap<&str, Outcome>>> = LazyLock::new(Default::default);
     let cell = OUTCOMES.lock().expect("no case runs under the lock").entry(key).or_default().clone();
     cell.get_or_init(|| {
         let case = run();

@@ -9,18 +9,21 @@ use fastrand::Rng;
 const P: usize = 256;
 const RM: RoundingMode = RoundingMode::ToEven;
 
+/// A real function at a number where it is defined.
+type Oracle = Box<dyn Fn(f64, &mut Consts) -> Option<BigFloat>>;
+
 struct Function {
     name: String,
     line: Box<dyn Fn(Interval) -> Linear>,
     /// The real value where the function is defined.
-    oracle: Box<dyn Fn(f64, &mut Consts) -> Option<BigFloat>>,
+    oracle: Oracle,
     /// Where it is smooth, for the questions about width.
     smooth: (f64, f64),
 }
 
 /// |x|^(p/q), with the sign of x where it counts; exact for whole exponents.
 fn power(x: f64, p: i32, q: u32, cc: &mut Consts) -> Option<BigFloat> {
-    if x < 0.0 && q % 2 == 0 || x == 0.0 && p < 0 {
+    if x < 0.0 && q.is_multiple_of(2) || x == 0.0 && p < 0 {
         return None;
     }
     let size = big(x.abs());
