@@ -77,7 +77,7 @@ pub struct EvalArguments {
     /// An expression such as 'x^2 - 1'; with --json a file of requests, `-` for stdin.
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     pub expression: String,
-    /// A number such as x=0.1 (one tenth exactly) or a=pi/2, or a box such as x=[1,2].
+    /// A number such as `x=0.1` (one tenth exactly) or `a=pi/2`, or a box such as `x=[1,2]`.
     #[arg(value_name = "NAME=VALUE", conflicts_with = "json")]
     pub values: Vec<String>,
     /// interval, affine, centred and others, `auto` for what they prove together, `all` for one line of each
@@ -199,7 +199,7 @@ pub struct CostArguments {
     /// A scene, or an expression such as 'x*(10-x)'. What exists or ends in .imp is a scene.
     #[arg(value_name = "FILE|EXPR", allow_hyphen_values = true)]
     pub subject: String,
-    /// What the variables of an expression are, such as x=[4,6].
+    /// What the variables of an expression are, such as `x=[4,6]`.
     #[arg(value_name = "NAME=VALUE")]
     pub values: Vec<String>,
     /// Write a page, charts, data or a table: the ending says which. Repeatable.

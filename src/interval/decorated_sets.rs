@@ -9,7 +9,7 @@ use super::{Decorated, Decoration, Overlap};
 macro_rules! numbers {
     ($($name:ident)*) => {
         impl Decorated {
-            $(#[doc = concat!("[`Interval::", stringify!($name), "`]; NaN for [`Decorated::ILL`].")]
+            $(#[doc = concat!("[`Interval::", stringify!($name), "`](crate::interval::Interval::", stringify!($name), "); NaN for [`Decorated::ILL`].")]
             pub fn $name(self) -> f64 {
                 if self.is_nai() { f64::NAN } else { self.interval().$name() }
             })*
@@ -21,7 +21,7 @@ macro_rules! numbers {
 macro_rules! relations {
     ($($name:ident($($other:ident)?);)*) => {
         impl Decorated {
-            $(#[doc = concat!("[`Interval::", stringify!($name), "`]; false for [`Decorated::ILL`].")]
+            $(#[doc = concat!("[`Interval::", stringify!($name), "`](crate::interval::Interval::", stringify!($name), "); false for [`Decorated::ILL`].")]
             pub fn $name(self $(, $other: Self)?) -> bool {
                 !self.is_nai() $(&& !$other.is_nai())? && self.interval().$name($($other.interval())?)
             })*
@@ -33,7 +33,7 @@ macro_rules! relations {
 macro_rules! untracked {
     ($($name:ident($($other:ident)* $(; $($number:ident: $kind:ty),*)?);)*) => {
         impl Decorated {
-            $(#[doc = concat!("[`Interval::", stringify!($name), "`], decorated `trv`.")]
+            $(#[doc = concat!("[`Interval::", stringify!($name), "`](crate::interval::Interval::", stringify!($name), "), decorated `trv`.")]
             pub fn $name(self $(, $other: Self)* $($(, $number: $kind)*)?) -> Self {
                 if self.is_nai() $(|| $other.is_nai())* {
                     return Self::ILL;
