@@ -93,22 +93,22 @@ impl Decorated {
         !self.is_nai() && !other.is_nai() && self.interval() == other.interval()
     }
 
-    /// IEEE 1788 `isMember`: [`Interval::contains`].
+    /// IEEE 1788 `isMember`: [`Interval::contains`](crate::interval::Interval::contains).
     pub fn contains(self, x: f64) -> bool {
         self.interval().contains(x)
     }
 
-    /// [`Interval::mid_rad`]; two NaN for [`Decorated::ILL`].
+    /// [`Interval::mid_rad`](crate::interval::Interval::mid_rad); two NaN for [`Decorated::ILL`].
     pub fn mid_rad(self) -> (f64, f64) {
         (self.mid(), self.rad())
     }
 
-    /// [`Interval::overlap`]; `None` if one is no interval.
+    /// [`Interval::overlap`](crate::interval::Interval::overlap); `None` if one is no interval.
     pub fn overlap(self, other: Self) -> Option<Overlap> {
         (!self.is_nai() && !other.is_nai()).then(|| self.interval().overlap(other.interval()))
     }
 
-    /// [`Interval::mul_rev_to_pair`]. Where 0 is not in this set, the first result is the quotient `c / self` and is
+    /// [`Interval::mul_rev_to_pair`](crate::interval::Interval::mul_rev_to_pair). Where 0 is not in this set, the first result is the quotient `c / self` and is
     /// decorated as one; all else is `trv`.
     pub fn mul_rev_to_pair(self, c: Self) -> [Self; 2] {
         if self.is_nai() || c.is_nai() {
