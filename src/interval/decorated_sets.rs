@@ -9,7 +9,8 @@ use super::{Decorated, Decoration, Overlap};
 macro_rules! numbers {
     ($($name:ident)*) => {
         impl Decorated {
-            $(#[doc = concat!("[`Interval::", stringify!($name), "`](crate::interval::Interval::", stringify!($name), "); NaN for [`Decorated::ILL`].")]
+            $(#[doc = concat!("[`Interval::", stringify!($name), "`]; NaN for [`Decorated::ILL`].")]
+            #[doc = concat!("\n\n[`Interval::", stringify!($name), "`]: crate::interval::Interval::", stringify!($name))]
             pub fn $name(self) -> f64 {
                 if self.is_nai() { f64::NAN } else { self.interval().$name() }
             })*
@@ -21,7 +22,8 @@ macro_rules! numbers {
 macro_rules! relations {
     ($($name:ident($($other:ident)?);)*) => {
         impl Decorated {
-            $(#[doc = concat!("[`Interval::", stringify!($name), "`](crate::interval::Interval::", stringify!($name), "); false for [`Decorated::ILL`].")]
+            $(#[doc = concat!("[`Interval::", stringify!($name), "`]; false for [`Decorated::ILL`].")]
+            #[doc = concat!("\n\n[`Interval::", stringify!($name), "`]: crate::interval::Interval::", stringify!($name))]
             pub fn $name(self $(, $other: Self)?) -> bool {
                 !self.is_nai() $(&& !$other.is_nai())? && self.interval().$name($($other.interval())?)
             })*
@@ -33,7 +35,8 @@ macro_rules! relations {
 macro_rules! untracked {
     ($($name:ident($($other:ident)* $(; $($number:ident: $kind:ty),*)?);)*) => {
         impl Decorated {
-            $(#[doc = concat!("[`Interval::", stringify!($name), "`](crate::interval::Interval::", stringify!($name), "), decorated `trv`.")]
+            $(#[doc = concat!("[`Interval::", stringify!($name), "`], decorated `trv`.")]
+            #[doc = concat!("\n\n[`Interval::", stringify!($name), "`]: crate::interval::Interval::", stringify!($name))]
             pub fn $name(self $(, $other: Self)* $($(, $number: $kind)*)?) -> Self {
                 if self.is_nai() $(|| $other.is_nai())* {
                     return Self::ILL;
@@ -108,8 +111,8 @@ impl Decorated {
         (!self.is_nai() && !other.is_nai()).then(|| self.interval().overlap(other.interval()))
     }
 
-    /// [`Interval::mul_rev_to_pair`](crate::interval::Interval::mul_rev_to_pair). Where 0 is not in this set, the first result is the quotient `c / self` and is
-    /// decorated as one; all else is `trv`.
+    /// [`Interval::mul_rev_to_pair`](crate::interval::Interval::mul_rev_to_pair). Where 0 is not in this set, the first
+    /// result is the quotient `c / self` and is decorated as one; all else is `trv`.
     pub fn mul_rev_to_pair(self, c: Self) -> [Self; 2] {
         if self.is_nai() || c.is_nai() {
             return [Self::ILL; 2];
