@@ -34,6 +34,7 @@ impl Engine {
         match self {
             Engine::Imp(Enclosures::Interval) => "interval",
             Engine::Imp(Enclosures::Affine) => "affine",
+            Engine::Imp(Enclosures::Centred) => "centred",
             Engine::Imp(Enclosures::Auto) => "auto",
             Engine::Finder(_, Arithmetic::Affine) => "affine",
             Engine::Finder(..) => "interval",
@@ -71,7 +72,7 @@ pub enum Selection {
     All,
 }
 
-const ENCLOSURES: [Enclosures; 3] = [Enclosures::Interval, Enclosures::Affine, Enclosures::Auto];
+const ENCLOSURES: [Enclosures; 4] = [Enclosures::Interval, Enclosures::Affine, Enclosures::Centred, Enclosures::Auto];
 const PRECISIONS: [Precision; 2] = [Precision::Single, Precision::Double];
 const ROUNDINGS: [Rounding; 2] = [Rounding::Outward, Rounding::Nearest];
 
@@ -130,7 +131,11 @@ impl Level {
             Selection::All => &[1, 2, 4, 8, 16],
         };
         let mut levels = vec![Level { precision: Precision::Double, goal: Goal::Size(width, height), ..BASELINE }];
-        for (enclosures, precision, rounding) in combinations().filter(|&(_, p, _)| p == Precision::Double) {
+        // Centred forms are taken along rays, of which a plane scene has none.
+        let in_planes = |&(enclosures, precision, _): &(Enclosures, Precision, Rounding)| {
+            enclosures != Enclosures::Centred && precision == Precision::Double
+        };
+        for (enclosures, precision, rounding) in combinations().filter(in_planes) {
             levels.extend(fractions.iter().rev().map(|&fraction| Level {
                 engine: Engine::Imp(enclosures),
                 precision,

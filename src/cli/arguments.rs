@@ -357,7 +357,9 @@ pub enum EnclosuresArgument {
     Interval,
     /// Affine forms intersected with it.
     Affine,
-    /// One of the two, by the shape of the formula.
+    /// The natural extension, with centred forms for beams of every size rather than small ones.
+    Centred,
+    /// Intervals or affine forms, by a trial that counts operations.
     Auto,
 }
 
@@ -366,6 +368,7 @@ impl From<EnclosuresArgument> for Enclosures {
         match enclosures {
             EnclosuresArgument::Interval => Enclosures::Interval,
             EnclosuresArgument::Affine => Enclosures::Affine,
+            EnclosuresArgument::Centred => Enclosures::Centred,
             EnclosuresArgument::Auto => Enclosures::Auto,
         }
     }

@@ -20,6 +20,8 @@ pub struct Context<'a> {
     pub condition: bool,
     /// The depth to which beams march.
     pub leaf: u8,
+    /// Blocks of at most 2^this pixels across are tried with their derivative.
+    pub slope_level: u8,
     /// The distance of neighbouring rays: at t = 1 in perspective, anywhere otherwise.
     pub pitch: f64,
     pub perspective: bool,

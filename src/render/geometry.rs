@@ -9,10 +9,12 @@ use crate::program::scene::Shape;
 use crate::program::scene::ShapeKind;
 use crate::render::camera::Camera;
 use crate::render::camera::Frame;
+use crate::render::camera::TILE;
 use crate::render::camera::Tile;
 use crate::render::context::Context;
 use crate::render::extent::extent;
 use crate::render::grid::Grid;
+use crate::render::options::Enclosures;
 use crate::render::options::Options;
 use crate::render::options::Stop;
 use crate::render::programs::Reach;
@@ -20,6 +22,9 @@ use crate::render::tile::Effort;
 
 /// The deepest cells of beams. Finer ones are left to single rays, whose double precision they would need.
 const LEAF: u8 = 12;
+
+/// Blocks of at most 2^4 = 16 pixels across are tried with their derivative, unless centred forms were asked for.
+const SLOPE_LEVEL: u8 = 4;
 
 /// Pixels along a side of the largest picture.
 const MAX_SIDE: u32 = 1 << 16;
@@ -80,6 +85,7 @@ impl Geometry {
             stop: options.stop,
             depth,
             leaf: LEAF.min(single),
+            slope_level: if options.enclosures == Enclosures::Centred { TILE.ilog2() as u8 } else { SLOPE_LEVEL },
             poles: options.poles,
             certificate: options.certificate,
         };
@@ -98,6 +104,7 @@ impl Geometry {
             region: shape.kind == ShapeKind::Region,
             condition: shape.condition.is_some(),
             leaf: self.effort.leaf,
+            slope_level: self.effort.slope_level,
             pitch: if perspective { pitch / self.camera.forward[axis].abs().max(0.25) } else { pitch },
             perspective,
         }

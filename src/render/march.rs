@@ -29,9 +29,6 @@ use crate::render::context::sign;
 /// first level of cache.
 pub const GROUPS: usize = 8;
 
-/// Blocks of at most 2^4 = 16 pixels across are tried with their derivative.
-const SLOPE_LEVEL: u8 = 4;
-
 /// In blocks of at most 2^2 = 4 pixels across, monotone cells are settled pixel by pixel.
 const SETTLE_LEVEL: u8 = 2;
 
@@ -245,7 +242,7 @@ impl<'a, T: Real> March<'a, T> {
                 // Inside a solid: each ray has entered it through the domain's face, or will say what it passed over.
                 let item = self.remove(lane);
                 self.hand_over(&item);
-            } else if item.level <= SLOPE_LEVEL {
+            } else if item.level <= self.context.slope_level {
                 let item = self.remove(lane);
                 self.survivors.push(item);
                 if self.survivors.len() == self.slope.capacity() {

@@ -13,7 +13,10 @@ pub enum Enclosures {
     Interval,
     /// AF1 forms intersected with it, one noise symbol along the ray and two across.
     Affine,
-    /// One of the two, by counting operations (`plan`).
+    /// The natural extension, and where it decides nothing centred forms along the rays, for beams of every size. (With
+    /// the others, beams of 16 pixels or less get them.)
+    Centred,
+    /// Intervals or affine forms, by counting operations (`plan`).
     #[default]
     Auto,
 }

@@ -117,6 +117,9 @@ impl fmt::Display for Plan {
 pub fn arithmetic(scene: &Scene, shape: &Shape, choice: Enclosures) -> (Arithmetic, String) {
     match choice {
         Enclosures::Interval => return (Arithmetic::Interval, "intervals were asked for".to_owned()),
+        Enclosures::Centred => {
+            return (Arithmetic::Interval, "centred forms were asked for, beside intervals".to_owned());
+        }
         Enclosures::Affine => return (Arithmetic::Affine, "affine forms were asked for".to_owned()),
         Enclosures::Auto => {}
     }

@@ -36,6 +36,8 @@ pub struct Effort {
     pub depth: u8,
     /// The depth to which beams march.
     pub leaf: u8,
+    /// Blocks of at most 2^this pixels across are tried with their derivative.
+    pub slope_level: u8,
     pub poles: bool,
     pub certificate: bool,
 }

@@ -175,6 +175,7 @@ fn so_do_those_of_other_choices() {
     let text = "4(2.618 x^2 - y^2)(2.618 y^2 - z^2)(2.618 z^2 - x^2) = 4.236 (x^2 + y^2 + z^2 - 1)^2";
     for options in [
         Options { enclosures: Enclosures::Affine, ..options(48) },
+        Options { enclosures: Enclosures::Centred, ..options(48) },
         Options { precision: Precision::Double, ..options(48) },
         Options { stop: imp::render::Stop::Depth(5), ..options(48) },
         Options { stop: imp::render::Stop::Depth(44), ..options(48) },
