@@ -81,8 +81,9 @@ impl fmt::Display for Choice {
 /// Tries intervals and affine forms on the domain, which has a range for each of one to three inputs of the graph; the
 /// others are parameters with the range that they may be set in. `None` if the formula is too large to be tried.
 ///
-/// The trial takes the middle of a parameter's range, or 1/2 where that is unbounded, and not what it is set to: the choice
-/// is part of what a certificate stands on.
+/// The trial does not look at what a parameter is set to, since the choice is part of what a certificate stands on. It takes
+/// a number inside each range, another part of it for each parameter: in the middle, symmetric ranges would all have 0 and
+/// the formula might be no formula any more.
 pub fn choose(
     graph: &Graph,
     root: Value,
@@ -103,9 +104,10 @@ pub fn choose(
     let start: Vec<Interval> = formula
         .variables()
         .iter()
-        .map(|name| {
-            let parameter = || known(parameters, name).filter(|range| range.is_bounded()).map(Interval::mid);
-            known(domain, name).unwrap_or_else(|| Interval::point(parameter().unwrap_or(0.5)))
+        .enumerate()
+        .map(|(i, name)| {
+            let inside = || known(parameters, name).filter(|range| range.is_bounded()).map(|range| part(range, i));
+            known(domain, name).unwrap_or_else(|| Interval::point(inside().unwrap_or(0.5)))
         })
         .collect();
     let counts = trial(&formula, start, levels, samples);
@@ -116,6 +118,12 @@ pub fn choose(
     });
     let arithmetic = if affine.total < interval.total { Arithmetic::Affine } else { Arithmetic::Interval };
     Some(Choice { arithmetic, interval, affine })
+}
+
+/// A number inside a bounded range; multiples of the golden ratio fall into different places for all `i`.
+fn part(range: Interval, i: usize) -> f64 {
+    let fraction = ((i + 1) as f64 * 0.618_033_988_749_895).fract();
+    (range.lo() * (1.0 - fraction) + range.hi() * fraction).clamp(range.lo(), range.hi())
 }
 
 /// The compiled program of a formula on boxes of the domain.

@@ -5,6 +5,7 @@ use crate::derive::Symbols;
 use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
+use crate::graph::elementary_function;
 
 /// An interval product of unknown signs: eight multiplications, six minima and maxima.
 pub const PRODUCT: u64 = 14;
@@ -66,27 +67,7 @@ fn interval(op: Op) -> u64 {
         Op::Mod => 2 * PRODUCT,
         Op::Hypot => 10,
         Op::PowRatio(..) | Op::Pow | Op::Atan2 => 2 * FUNCTION,
-        Op::Cbrt
-        | Op::Exp
-        | Op::Exp2
-        | Op::Exp10
-        | Op::Expm1
-        | Op::Ln
-        | Op::Log1p
-        | Op::Log2
-        | Op::Log10
-        | Op::Sin
-        | Op::Cos
-        | Op::Tan
-        | Op::Asin
-        | Op::Acos
-        | Op::Atan
-        | Op::Sinh
-        | Op::Cosh
-        | Op::Tanh
-        | Op::Asinh
-        | Op::Acosh
-        | Op::Atanh => FUNCTION,
+        elementary_function!() => FUNCTION,
     }
 }
 
@@ -123,27 +104,6 @@ fn form(op: Op, n: u64) -> u64 {
         | Op::Select
         | Op::Kink
         | Op::SelectJump => range + interval(op) + 4,
-        Op::PowRatio(..)
-        | Op::Cbrt
-        | Op::Exp
-        | Op::Exp2
-        | Op::Exp10
-        | Op::Expm1
-        | Op::Ln
-        | Op::Log1p
-        | Op::Log2
-        | Op::Log10
-        | Op::Sin
-        | Op::Cos
-        | Op::Tan
-        | Op::Asin
-        | Op::Acos
-        | Op::Atan
-        | Op::Sinh
-        | Op::Cosh
-        | Op::Tanh
-        | Op::Asinh
-        | Op::Acosh
-        | Op::Atanh => approximated,
+        Op::PowRatio(..) | elementary_function!() => approximated,
     }
 }

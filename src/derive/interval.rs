@@ -25,6 +25,7 @@ use crate::derive::magnitude;
 use crate::graph::Node;
 use crate::graph::Op;
 use crate::graph::Value;
+use crate::graph::elementary_function;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
@@ -326,30 +327,7 @@ impl Lowering<'_> {
                 let ends = b.truth_ends(proved, refuted);
                 return (Applied { ends, empty: Mask::False, continuous: decided }, Sign::NonNegative);
             }
-            Op::PowRatio(..)
-            | Op::Cbrt
-            | Op::Exp
-            | Op::Exp2
-            | Op::Exp10
-            | Op::Expm1
-            | Op::Ln
-            | Op::Log1p
-            | Op::Log2
-            | Op::Log10
-            | Op::Sin
-            | Op::Cos
-            | Op::Tan
-            | Op::Asin
-            | Op::Acos
-            | Op::Atan
-            | Op::Sinh
-            | Op::Cosh
-            | Op::Tanh
-            | Op::Asinh
-            | Op::Acosh
-            | Op::Atanh
-            | Op::Pow
-            | Op::Atan2 => {
+            Op::PowRatio(..) | elementary_function!() | Op::Pow | Op::Atan2 => {
                 let all: Vec<Ends> = operands.iter().map(|form| form.ends).collect();
                 elementary::apply(b, node.op, &all)
             }

@@ -11,6 +11,7 @@ use crate::derive::lanes::LaneProgram;
 use crate::graph::Node;
 use crate::graph::Op;
 use crate::graph::Value;
+use crate::graph::elementary_function;
 use crate::interval::Decorated;
 
 /// Lowers a spec with point arithmetic. Constants are the midpoints of their enclosures.
@@ -107,30 +108,7 @@ fn operation(b: &mut Builder, node: &Node, operands: &[Lane]) -> Lane {
             b.select(below, y, operands[2])
         }
         Op::Entire => b.number(f64::NAN),
-        Op::PowRatio(..)
-        | Op::Cbrt
-        | Op::Exp
-        | Op::Exp2
-        | Op::Exp10
-        | Op::Expm1
-        | Op::Ln
-        | Op::Log1p
-        | Op::Log2
-        | Op::Log10
-        | Op::Sin
-        | Op::Cos
-        | Op::Tan
-        | Op::Asin
-        | Op::Acos
-        | Op::Atan
-        | Op::Sinh
-        | Op::Cosh
-        | Op::Tanh
-        | Op::Asinh
-        | Op::Acosh
-        | Op::Atanh
-        | Op::Pow
-        | Op::Atan2 => elementary::point(b, node.op, operands),
+        Op::PowRatio(..) | elementary_function!() | Op::Pow | Op::Atan2 => elementary::point(b, node.op, operands),
         Op::Const(_) | Op::Var(_) | Op::Pi => unreachable!("{} is lowered elsewhere", node.op.name()),
     }
 }

@@ -15,6 +15,7 @@ use num_traits::{One, Zero};
 
 pub use affine::apply_affine;
 pub use eval::{apply, enclose};
+pub(crate) use op::elementary_function;
 pub use op::{AffineForm, Op, Totality};
 pub use text::{ParseError, parse};
 pub use verify::{truths, verify};

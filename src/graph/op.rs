@@ -151,6 +151,35 @@ op_table! {
     SelectJump 3 "select_jump" ThroughInterval Jumps "Select of derivatives across a possible jump: undecided it is the whole line.";
 }
 
+/// The elementary functions of one argument, as a pattern: what most places treat alike, without losing the compiler's word
+/// that no operation is forgotten.
+macro_rules! elementary_function {
+    () => {
+        $crate::graph::Op::Cbrt
+            | $crate::graph::Op::Exp
+            | $crate::graph::Op::Exp2
+            | $crate::graph::Op::Exp10
+            | $crate::graph::Op::Expm1
+            | $crate::graph::Op::Ln
+            | $crate::graph::Op::Log1p
+            | $crate::graph::Op::Log2
+            | $crate::graph::Op::Log10
+            | $crate::graph::Op::Sin
+            | $crate::graph::Op::Cos
+            | $crate::graph::Op::Tan
+            | $crate::graph::Op::Asin
+            | $crate::graph::Op::Acos
+            | $crate::graph::Op::Atan
+            | $crate::graph::Op::Sinh
+            | $crate::graph::Op::Cosh
+            | $crate::graph::Op::Tanh
+            | $crate::graph::Op::Asinh
+            | $crate::graph::Op::Acosh
+            | $crate::graph::Op::Atanh
+    };
+}
+pub(crate) use elementary_function;
+
 impl Op {
     /// The operation without payload that has this textual name.
     pub fn from_name(name: &str) -> Option<Op> {

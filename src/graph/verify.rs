@@ -12,6 +12,7 @@
 use super::Graph;
 use super::Node;
 use super::Op;
+use super::elementary_function;
 
 /// Checks every invariant; the message names the first node that breaks one.
 pub fn verify(graph: &Graph) -> Result<(), String> {
@@ -90,30 +91,10 @@ pub fn truths(graph: &Graph) -> Vec<bool> {
             | Op::Entire
             | Op::Neg
             | Op::Sqrt
-            | Op::Cbrt
+            | elementary_function!()
             | Op::Floor
             | Op::Ceil
             | Op::Round
-            | Op::Exp
-            | Op::Exp2
-            | Op::Exp10
-            | Op::Expm1
-            | Op::Ln
-            | Op::Log1p
-            | Op::Log2
-            | Op::Log10
-            | Op::Sin
-            | Op::Cos
-            | Op::Tan
-            | Op::Asin
-            | Op::Acos
-            | Op::Atan
-            | Op::Sinh
-            | Op::Cosh
-            | Op::Tanh
-            | Op::Asinh
-            | Op::Acosh
-            | Op::Atanh
             | Op::Add
             | Op::Div
             | Op::Mod
