@@ -146,8 +146,7 @@ impl Search {
         if excludes(value) {
             return true;
         }
-        let factors = self.factors.clone();
-        factors.into_iter().any(|factor| excludes(self.enclose(factor, x).interval()))
+        (0..self.factors.len()).any(|i| excludes(self.enclose(self.factors[i], x).interval()))
     }
 
     /// The derivative where the function is proved continuous and the derivative proved defined.
