@@ -60,12 +60,12 @@
 //!
 //! | no. | modules |
 //! |---|---|
-//! | 0 | [`diagnostic`]: where source text lives, messages; [`interval`]: intervals, decorations, affine forms |
+//! | 0 | [`diagnostic`]: where source text lives, messages; [`interval`]: intervals, decorations, affine forms; [`control`]: progress and cancellation |
 //! | 1 | [`graph`]: hash-consed SSA over exact real operations; [`syntax`]: tokens, grammar, tree, no meaning |
 //! | 2 | [`program`]: names, kinds, modules, the standard library, scenes; [`passes`]: folding and rewriting |
 //! | 3 | [`mod@derive`]: gradients, formulas along rays, interval and affine programs of lanes |
 //! | 4 | [`kernel`]: what consumers call: packets of boxes in, enclosures and verdicts out |
-//! | 5 | [`interpret`]: the reference kernel; [`codegen`]: the compiled ones; [`render`]: pictures and their proofs |
+//! | 5 | [`interpret`]: the reference kernel; [`codegen`]: the compiled ones; [`render`]: pictures and their proofs; [`arrange`]: arrangements of curves |
 //! | 6 | [`session`]: source to scene in one function, and the choice of the backend; [`accuracy`]: what accuracy costs |
 //! | 7 | [`repl`]: calculating with boxes interactively |
 //! | 8 | [`cli`]: the `imp` command |
@@ -81,8 +81,10 @@
 //!   modules.
 
 pub mod accuracy;
+pub mod arrange;
 pub mod cli;
 pub mod codegen;
+pub mod control;
 pub mod derive;
 pub mod diagnostic;
 pub mod graph;

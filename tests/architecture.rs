@@ -7,6 +7,7 @@ use std::path::PathBuf;
 /// Every top-level module with its layer; a module imports only modules of a smaller number.
 const LAYERS: &[(&str, u8)] = &[
     ("diagnostic", 0),
+    ("control", 0),
     ("interval", 0),
     ("graph", 1),
     ("syntax", 1),

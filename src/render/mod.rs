@@ -30,10 +30,7 @@ mod stats;
 mod tile;
 mod verify;
 
-use std::sync::atomic::AtomicBool;
-use std::sync::atomic::AtomicUsize;
-use std::sync::atomic::Ordering;
-
+pub use crate::control::Control;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::kernel::Backend;
@@ -64,40 +61,9 @@ pub use stats::median;
 pub use verify::Report;
 pub use verify::verify;
 
-/// How a caller watches and stops work under way.
-#[derive(Default)]
-pub struct Control<'a> {
-    /// Called with tiles done and tiles in all, from any thread.
-    pub progress: Option<&'a (dyn Fn(usize, usize) + Sync)>,
-    /// Set from anywhere to stop: the work ends with a diagnostic, and nothing is written.
-    pub cancel: Option<&'a AtomicBool>,
-    done: AtomicUsize,
-}
-
-impl<'a> Control<'a> {
-    pub fn new(progress: Option<&'a (dyn Fn(usize, usize) + Sync)>, cancel: Option<&'a AtomicBool>) -> Self {
-        Self { progress, cancel, done: AtomicUsize::new(0) }
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
-    }
-
-    fn advance(&self, total: usize) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        if let Some(progress) = self.progress {
-            progress(done, total);
-        }
-    }
-
-    /// Before the work starts over.
-    fn reset(&self) {
-        self.done.store(0, Ordering::Relaxed);
-    }
-
-    fn cancelled() -> Diagnostic {
-        Diagnostic::error(code::STOPPED, "stopped before the picture was complete")
-    }
+/// What becomes of a picture whose control was set to stop.
+fn stopped() -> Diagnostic {
+    Diagnostic::error(code::STOPPED, "stopped before the picture was complete")
 }
 
 /// A scene with its kernels, ready to be rendered for any values of its parameters: an animation compiles once.

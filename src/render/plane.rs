@@ -40,6 +40,7 @@ use crate::render::programs::Orders;
 use crate::render::stats::Evaluations;
 use crate::render::stats::Stats;
 use crate::render::stats::median;
+use crate::render::stopped;
 
 /// Pixels across the blocks that are tasks of their own.
 const BLOCK: u32 = 64;
@@ -195,7 +196,7 @@ impl Plane {
                 .collect();
             let mut whole = vec![Place::Outside; pixels];
             for (&(x, y), decided) in corners.iter().zip(decided) {
-                let (block, evaluations) = decided.ok_or_else(Control::cancelled)?;
+                let (block, evaluations) = decided.ok_or_else(stopped)?;
                 stats.evaluations += Evaluations { beam: evaluations, ..Evaluations::default() };
                 let columns = (width - x).min(BLOCK) as usize;
                 for (row, places) in block.chunks(BLOCK as usize).take((height - y).min(BLOCK) as usize).enumerate() {

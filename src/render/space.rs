@@ -40,6 +40,7 @@ use crate::render::shade::Spot;
 use crate::render::stats::Evaluations;
 use crate::render::stats::Stats;
 use crate::render::stats::median;
+use crate::render::stopped;
 use crate::render::tile::Traced;
 use crate::render::tile::Tracer;
 use crate::render::tile::trace;
@@ -276,7 +277,7 @@ impl<T: Format> Job<'_, T> {
             .collect();
         control.reset();
         let finished: Option<Vec<Finished>> = finished.into_iter().collect();
-        let finished = finished.ok_or_else(Control::cancelled)?;
+        let finished = finished.ok_or_else(stopped)?;
         Ok(self.assemble(finished))
     }
 

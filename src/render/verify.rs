@@ -37,6 +37,7 @@ use crate::render::outcome::Surface;
 use crate::render::plan::arithmetic;
 use crate::render::programs::Compiled;
 use crate::render::programs::Orders;
+use crate::render::stopped;
 
 /// How often a recorded cell may be split to be refuted: kernels may be tighter than the reference here and there.
 const SPLITS: u32 = 8;
@@ -96,7 +97,7 @@ pub fn verify(
         .zip(&certificate.tiles)
         .map(|(&tile, proofs)| {
             if control.is_cancelled() {
-                return Err(Control::cancelled());
+                return Err(stopped());
             }
             let report = verify_tile(scene, &geometry, tile, proofs, &programs);
             control.advance(geometry.tiles.len());
