@@ -16,13 +16,10 @@
 
 #include <CGAL/Arr_algebraic_segment_traits_2.h>
 #include <CGAL/Arrangement_2.h>
-#ifdef WITH_GMPZ
-#include <CGAL/Gmpz.h>
-typedef CGAL::Gmpz Integer;
-#else
 #include <CGAL/CORE_BigInt.h>
+
+// Faster here than CGAL::Gmpz.
 typedef CORE::BigInt Integer;
-#endif
 
 typedef CGAL::Arr_algebraic_segment_traits_2<Integer> Traits;
 typedef CGAL::Arrangement_2<Traits> Arrangement;
@@ -110,7 +107,7 @@ int main(int argc, char** argv) {
     if (box) {
         // From the lower left corner to the right, the inside is to the left.
         for (auto v = arr.vertices_begin(); v != arr.vertices_end(); ++v) {
-            if (v->is_at_open_boundary() || v->is_isolated()) continue;
+            if (v->is_isolated()) continue;
             std::set<std::size_t> here;
             auto first = v->incident_halfedges(), e = first;
             do here.insert(e->curve().curve().id()); while (++e != first);
@@ -156,13 +153,14 @@ int main(int argc, char** argv) {
     // A point of a curve on the frame: an end of an edge there, or a point that only touches.
     int boundary = 0, ends = 0;
     std::map<int, int> degrees;
-    std::map<const void*, bool> infinite;
-    for (auto v = arr.vertices_begin(); v != arr.vertices_end(); ++v) infinite[&*v] = v->is_at_open_boundary();
+    // The list of vertices leaves out those at infinity.
+    std::set<const void*> finite;
+    for (auto v = arr.vertices_begin(); v != arr.vertices_end(); ++v) finite.insert(&*v);
     std::set<const void*> roots;
     for (const auto& [v, d] : degree) {
         // A vertex at infinity stands for one end of a branch; there it ends.
         roots.insert(parts.find(v));
-        if (infinite[v]) ends++;
+        if (!finite.count(v)) ends++;
         else if (frame_points.count(v)) boundary++;
         else if (d != 2) degrees[d]++;
     }
