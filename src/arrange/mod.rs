@@ -8,6 +8,7 @@
 mod assemble;
 mod cluster;
 pub mod complex;
+pub mod exact;
 pub mod field;
 mod functions;
 mod local;
