@@ -5,6 +5,8 @@
 //! small, `sides` isolates where curves cross the sides of cells, `local` joins these nodes within each cell, together a
 //! [`Complex`]; `build` turns that into halfedges and faces. [`published`] is the algorithm as the source has it.
 
+pub mod build;
+pub mod check;
 pub mod complex;
 pub mod field;
 pub mod options;
