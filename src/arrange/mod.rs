@@ -9,7 +9,11 @@ pub mod build;
 pub mod check;
 pub mod complex;
 pub mod field;
+pub mod index;
+pub mod locate;
+pub mod merge;
 pub mod options;
+pub mod query;
 pub mod structure;
 
 pub use complex::Complex;

@@ -15,6 +15,8 @@ use crate::interval::Interval;
 
 pub type Box2 = [Interval; 2];
 type Point = [f64; 2];
+/// A stretch of a line from and to, with a cell on it, and whether that cell is on side 0.
+type Stretch = (f64, f64, usize, bool);
 
 /// A curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -281,8 +283,7 @@ fn point(node: &Node, segments: &[Segment]) -> Point {
 
 /// The segments between cells, and the cells with their boundaries.
 pub fn tile(cells: &[Vec<Box2>]) -> (Vec<Segment>, Vec<Cell>) {
-    // By line: stretches with their cell, and whether the cell is on side 0.
-    let mut lines: BTreeMap<(bool, u64), Vec<(f64, f64, usize, bool)>> = BTreeMap::new();
+    let mut lines: BTreeMap<(bool, u64), Vec<Stretch>> = BTreeMap::new();
     for (c, [x, y]) in cells.iter().enumerate().flat_map(|(c, boxes)| boxes.iter().map(move |sides| (c, sides))) {
         let key = |at: f64| (at + 8.0).to_bits();
         lines.entry((false, key(y.lo()))).or_default().push((x.lo(), x.hi(), c, true));
