@@ -8,6 +8,7 @@ mod figures;
 mod formulas;
 
 use std::collections::BTreeSet;
+use std::time::Instant;
 
 use cases::Case;
 use figures::Figures;
@@ -31,10 +32,12 @@ fn judged(options: &Options) -> (Vec<String>, BTreeSet<&'static str>) {
     let mut wrong = Vec::new();
     let mut proved = BTreeSet::new();
     for case in all() {
+        let start = Instant::now();
         let outcome = arranged(case.scene, options).and_then(|arrangement| Figures::of(&arrangement));
         match outcome {
             Err(said) => wrong.push(format!("{}: {said}", case.name)),
             Ok(figures) => {
+                println!("{} ms, {}: {}", start.elapsed().as_millis(), figures.proved, case.name);
                 if figures.proved {
                     proved.insert(case.name);
                 }
