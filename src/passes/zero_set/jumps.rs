@@ -199,3 +199,9 @@ pub fn atom(space: &mut Space, value: Value) -> Option<Value> {
         _ => None,
     }
 }
+
+/// Whether a value changes at jumps alone: it has no zeros of its own then, but whole regions of them.
+pub fn is_constant_between(space: &Space, value: Value) -> bool {
+    let step = |op: Op, _: usize| matches!(op, Op::Floor | Op::Ceil | Op::Round | Op::Sign);
+    space.below(value, step).iter().all(|&v| !matches!(space.shape(v).0, Op::Var(_)))
+}
