@@ -270,7 +270,7 @@ const PIECES: &[(&str, &[&str])] = &[
     // Jumps.
     ("sign(x) = y", &["(1 + y) if (0 < neg(x)) at x", "y if (0 = x) at x", "(-1 + y) if (0 < x) at x"]),
     ("step(0, x) = y", &["y if (0 < neg(x)) at x", "(-1 + y) if (0 <= x) at x"]),
-    ("(if x < 0 then -x else x^2) = y", &["(x + y) if (0 < neg(x)) at x", "(x^2 - y) if (0 <= x) at x"]),
+    ("(if x < 0 then -x else x^2) = y", &["(x + y) if (0 < neg(x)) at x", "(y - x^2) if (0 <= x) at x"]),
     ("mod(x - y, 20) = 0", &["(20 + (x - y))", "(x - y)", "(-20 + (x - y))"]),
     ("x = y where floor(x) = 2", &["(x - y) if (2 = floor(x)) at sin((x * pi))"]),
     // Extrema: corners become crossings.
