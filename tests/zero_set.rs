@@ -93,6 +93,7 @@ fn formula(graph: &Graph, value: Value) -> String {
         Op::Sqr => format!("{}^2", operands[0]),
         Op::PowInt(n) => format!("{}^{n}", operands[0]),
         op if operands.is_empty() => op.name().to_owned(),
+        Op::PowRatio(p, q) => format!("{}^({p}/{q})", operands[0]),
         op => format!("{}({})", op.name(), operands.join(", ")),
     }
 }
@@ -150,7 +151,10 @@ impl Curve {
 
     /// Compares the set with the union of its pieces on a box.
     fn check(&self, square: [Interval; 2]) -> [bool; 2] {
-        let context = || format!("at {} x {}:\n{}", square[0], square[1], self.lines().join("\n"));
+        let context = || {
+            let formulas = [Some(self.field), self.condition].map(|v| v.map(|v| formula(&self.graph, v)));
+            format!("at {} x {} of {formulas:?}:\n{}", square[0], square[1], self.lines().join("\n"))
+        };
         let lost = self.does_meet(self.whole(), square);
         if lost {
             assert!(self.parts().any(|part| self.may_meet(part, square)), "a zero is lost {}", context());
@@ -334,6 +338,7 @@ const EQUATIONS: &[&str] = &[
     "x - x = 0",
     "y = (if x < 0 then sqrt(-x) else ln(x))",
     "y = (if x < 0 then (if y < 0 then x else 1 / x) else sqrt(y))",
+    "y = (if x < 0 then x else sign(sqrt(x)))",
     "x / y = y / x",
     "1 / (x - 1) + 1 / (y - 1) = 1",
     "x = y where 1 / x < 2",

@@ -34,7 +34,9 @@ pub fn split(space: &mut Space, branch: &Branch, room: usize) -> Option<Vec<Bran
     for &jump in &jumps {
         total = total.checked_mul(count(space, jump)?).filter(|&total| total <= room)?;
     }
-    let first = *jumps.first()?;
+    // Arms of a selection come after it: where they are not selected, nothing in them need be defined.
+    let outside = space.below(branch.field, |op, _| op == Op::Select);
+    let first = *jumps.iter().find(|jump| outside.contains(jump))?;
     let replaced = match space.shape(first) {
         // Whatever else depends on the condition is decided with it.
         (Op::Select, &[condition, ..]) => condition,
