@@ -7,6 +7,7 @@
 
 pub mod complex;
 pub mod field;
+pub mod geometry;
 pub mod options;
 pub mod structure;
 
