@@ -27,11 +27,11 @@ pub struct Arc {
 /// What is known of a stretch between its ends.
 #[derive(Debug, Clone)]
 pub enum Body {
-    /// A graph over the coordinate `axis`: encloses of the other coordinate and of the difference quotients (all reals if
+    /// A graph over the coordinate `axis`: enclosures of the other coordinate and of the difference quotients (all reals if
     /// nothing is known of them).
     Graph { axis: usize, reach: Interval, slope: Interval },
-    /// A simple curve within a cell, of which nothing else is known.
-    Hidden { cell: u32, hull: Rect, nodes: [Option<u32>; 2] },
+    /// A simple curve within a cell, between nodes or a node and a vertex, not longer than `longest`.
+    Hidden { cell: u32, hull: Rect, nodes: [Option<u32>; 2], longest: f64 },
 }
 
 /// The slopes of the curve f = 0 as a graph over x and over y, where they are proved bounded in a box that was sampled:
@@ -150,7 +150,10 @@ impl Arc {
     pub fn length(&self) -> Interval {
         let step = self.step();
         let least = step[0].hypot(step[1]).lo().max(0.0);
-        let mut most = f64::INFINITY;
+        let mut most = match self.body {
+            Body::Graph { .. } => f64::INFINITY,
+            Body::Hidden { longest, .. } => longest,
+        };
         if let Body::Graph { axis, slope, .. } = self.body
             && slope.is_bounded()
         {
@@ -164,9 +167,9 @@ impl Arc {
             } else {
                 low.hull(high)
             };
-            most = (step[axis].abs() * mean).hi().max(least);
+            most = (step[axis].abs() * mean).hi();
         }
-        Interval::new(least, most).unwrap_or(Interval::ENTIRE)
+        Interval::new(least, most.max(least)).unwrap_or(Interval::ENTIRE)
     }
 
     /// Encloses the integral of (x dy - y dx) / 2 along the stretch, with coordinates relative to `origin`; `None` if it is

@@ -53,9 +53,8 @@ impl Walks {
         let origin = [width.mid(), height.mid()];
         let domain = [width, height].map(|side| Interval::point(side.hi()) - Interval::point(side.lo()));
         let mut outlines = HashMap::new();
-        let faces = (0..arrangement.faces.len())
-            .map(|face| walk(arrangement, chains, face, origin, &mut outlines))
-            .collect();
+        let faces =
+            (0..arrangement.faces.len()).map(|face| walk(arrangement, chains, face, origin, &mut outlines)).collect();
         Self { origin, domain: domain[0] * domain[1], faces }
     }
 
@@ -69,13 +68,13 @@ impl Walks {
 
     /// Encloses the areas, by face.
     pub fn measures(&self, integrals: &[Interval]) -> Vec<Option<Measure<'_>>> {
-        let measure = |walk: &Walk| {
-            let signed = walk.edges.iter().map(|&(edge, left)| if left { integrals[edge] } else { -integrals[edge] });
-            let area = signed.fold(walk.rest, |sum, part| sum + part);
-            let possible = Interval::ZERO.hull(self.domain);
-            Measure { area: area.intersect(possible), edges: &walk.edges }
-        };
-        self.faces.iter().map(|walk| walk.as_ref().map(measure)).collect()
+        self.faces.iter().map(|walk| Some(self.measure(walk.as_ref()?, integrals))).collect()
+    }
+
+    fn measure<'a>(&self, walk: &'a Walk, integrals: &[Interval]) -> Measure<'a> {
+        let signed = walk.edges.iter().map(|&(edge, left)| if left { integrals[edge] } else { -integrals[edge] });
+        let area = signed.fold(walk.rest, |sum, part| sum + part);
+        Measure { area: area.intersect(Interval::ZERO.hull(self.domain)), edges: &walk.edges }
     }
 }
 

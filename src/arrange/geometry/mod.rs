@@ -163,7 +163,8 @@ fn areas_of(
         for measure in walks.measures(&walks.integrals(chains)).into_iter().flatten() {
             let width = measure.area.width();
             // A face that may be empty is first enclosed better.
-            let wanted = (precision.relative * measure.area.lo()).max(if measure.area.lo() > 0.0 { 0.0 } else { width / 4.0 });
+            let wanted =
+                (precision.relative * measure.area.lo()).max(if measure.area.lo() > 0.0 { 0.0 } else { width / 4.0 });
             if width > wanted {
                 let pieces: usize = measure.edges.iter().map(|&(edge, _)| chains[edge].len()).sum();
                 for &(edge, _) in measure.edges {

@@ -1,5 +1,7 @@
 //! The stretches of an arrangement's edges, one for each cell that an edge passes.
 
+use std::collections::HashMap;
+
 use crate::arrange::complex::Axis;
 use crate::arrange::complex::Cell;
 use crate::arrange::complex::VertexKind;
@@ -84,6 +86,7 @@ fn hidden(arrangement: &Arrangement, functions: &[Function], index: usize, edge:
                     cell,
                     hull: around(&arrangement.complex.cells[cell as usize]),
                     nodes: [pair[0].1, pair[1].1],
+                    longest: f64::INFINITY,
                 };
                 Arc { function, ends: [pair[0].0, pair[1].0], body, fixed: true }
             })
@@ -98,25 +101,30 @@ fn hidden(arrangement: &Arrangement, functions: &[Function], index: usize, edge:
 /// strip it would have to pass the fibre of its last point before its end, or that of its first point again; but this
 /// point is the only zero there.
 fn reveal(arrangement: &Arrangement, chains: &mut [Chain], evaluate: &Evaluate) {
-    let mut queries = Vec::new();
     let mut asked = Vec::new();
+    let mut queries = Vec::new();
     for (chain, place) in chains.iter().enumerate().flat_map(|(i, chain)| (0..chain.len()).map(move |k| (i, k))) {
         let arc = &chains[chain][place];
         let Body::Hidden { cell, hull: room, .. } = arc.body else { continue };
-        if arrangement.complex.cells[cell as usize].boxes.len() != 1 {
-            continue;
+        if let [whole] = arrangement.complex.cells[cell as usize].boxes[..] {
+            let ends = hull(&arc.ends[0], &arc.ends[1]);
+            queries.extend([[ends[0], room[1]], [room[0], ends[1]], whole].map(|strip| (arc.function, strip)));
+            asked.push((chain, place));
         }
-        let ends = hull(&arc.ends[0], &arc.ends[1]);
-        queries.extend([[ends[0], room[1]], [room[0], ends[1]]].map(|strip| (arc.function, strip)));
-        asked.push((chain, place));
     }
     let samples = evaluate(&queries);
     let mut found = Vec::new();
-    for (&(chain, place), pair) in asked.iter().zip(samples.chunks_exact(2)) {
-        let arc = &chains[chain][place];
-        let Body::Hidden { cell, hull: room, nodes } = arc.body else { continue };
+    for (&(chain, place), three) in asked.iter().zip(samples.chunks_exact(3)) {
+        let arc = &mut chains[chain][place];
+        let Body::Hidden { cell, hull: room, nodes, ref mut longest } = arc.body else { continue };
+        // A graph over the whole side of the cell is not longer than this, nor is a part of it.
+        for (side, slope) in room.iter().zip(slopes(&three[2])) {
+            let stretch = slope.map(|slope| Interval::ONE.hypot(Interval::point(slope.mag())));
+            let bound = stretch.map(|stretch| (Interval::point(side.width()) * stretch).hi());
+            *longest = bound.map_or(*longest, |bound| longest.min(bound));
+        }
         let mut ways: Vec<(usize, Interval)> =
-            (0..2).filter_map(|axis| Some((axis, slopes(&pair[axis])[axis]?))).collect();
+            (0..2).filter_map(|axis| Some((axis, slopes(&three[axis])[axis]?))).collect();
         ways.sort_by(|a, b| a.1.mag().total_cmp(&b.1.mag()));
         if ways.is_empty()
             && let Some(axis) = claimed(&arrangement.complex.cells[cell as usize], nodes)
@@ -128,11 +136,35 @@ fn reveal(arrangement: &Arrangement, chains: &mut [Chain], evaluate: &Evaluate) 
             found.push(((chain, place), Arc { body, fixed: false, ..arc.clone() }));
         }
     }
+    // Areas go around a vertex whose arms are not all known.
+    let mut arms: HashMap<u32, usize> = HashMap::new();
+    for &(place, _) in &found {
+        for vertex in inner(arrangement, chains, place) {
+            *arms.entry(vertex).or_default() += 1;
+        }
+    }
+    let mut all: HashMap<u32, usize> = HashMap::new();
+    for &place in &asked {
+        for vertex in inner(arrangement, chains, place) {
+            *all.entry(vertex).or_default() += 1;
+        }
+    }
+    found.retain(|&(place, _)| {
+        let known = |vertex: u32| arrangement.vertices[vertex as usize].vertex.proved && arms[&vertex] == all[&vertex];
+        inner(arrangement, chains, place).into_iter().all(known)
+    });
     let (places, mut arcs): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     enclose(&mut arcs, evaluate);
     for ((chain, place), arc) in places.into_iter().zip(arcs) {
         chains[chain][place] = arc;
     }
+}
+
+/// The vertices within a cell at which a stretch starts or ends.
+fn inner(arrangement: &Arrangement, chains: &[Chain], (chain, place): (usize, usize)) -> Vec<u32> {
+    let Body::Hidden { nodes, .. } = chains[chain][place].body else { return Vec::new() };
+    let sides = (0..2).filter(|&side| nodes[side].is_none());
+    sides.map(|side| arrangement.halfedges[2 * chain + side].origin).collect()
 }
 
 /// The coordinate of which the curve between two nodes of a cell is a function by construction.
