@@ -231,7 +231,7 @@ fn a_disc_with_a_graph_of_unknown_slope() {
     let evaluate = |queries: &[(Function, Rect)]| {
         let mut samples = fields(&[circle])(queries);
         for (sample, (_, [x, y])) in samples.iter_mut().zip(queries) {
-            if x.width() > 0.3 && y.lo() >= 0.25 {
+            if x.width() > 0.3 && x.mag() <= 0.5 && y.lo() >= 0.25 {
                 sample.bits = 0;
             }
         }
