@@ -15,7 +15,9 @@ use crate::arrange::structure::ArrangedVertex;
 use crate::arrange::structure::Edge;
 use crate::arrange::structure::EdgeKind;
 use crate::arrange::structure::Face;
+use crate::arrange::structure::Gaps;
 use crate::arrange::structure::Halfedge;
+use crate::arrange::structure::Site;
 use crate::kernel::verdict;
 use arc::Arc;
 use arc::Body;
@@ -93,13 +95,22 @@ fn arrange(complex: Complex, vertices: &[Vertex], edges: &[([u32; 2], Edge)], fa
         curves: complex.curves.clone(),
         vertices: vertices
             .iter()
-            .map(|vertex| ArrangedVertex { vertex: vertex.clone(), halfedge: None, face: None })
+            .map(|vertex| {
+                let site = match vertex.kind {
+                    VertexKind::Corner => Site::Corner,
+                    VertexKind::Boundary | VertexKind::Loop => Site::Node(0),
+                    _ => Site::Block { cell: 0, block: 0 },
+                };
+                ArrangedVertex { vertex: vertex.clone(), site, halfedge: None, face: None }
+            })
             .collect(),
         halfedges,
         edges: edges.iter().map(|(_, edge)| edge.clone()).collect(),
         faces: records,
         proved: true,
         complex,
+        gaps: Gaps::default(),
+        node_edges: Vec::new(),
         milliseconds: 0.0,
     }
 }
