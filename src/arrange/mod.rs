@@ -6,6 +6,7 @@
 //! [`Complex`]; `build` turns that into halfedges and faces. [`published`] is the algorithm as the source has it.
 
 pub mod complex;
+pub mod export;
 pub mod field;
 pub mod options;
 pub mod structure;

@@ -1,0 +1,52 @@
+//! An arrangement in files: pictures (SVG, PNG), data (JSON, GeoJSON) and the graph (DOT).
+
+pub mod dot;
+mod drawing;
+pub mod geojson;
+pub mod json;
+mod letters;
+mod paint;
+pub mod picture;
+pub mod png;
+mod rings;
+pub mod summary;
+pub mod svg;
+
+use crate::arrange::structure::Arrangement;
+use crate::arrange::structure::VertexId;
+use crate::interval::Interval;
+
+pub use picture::Style;
+pub use summary::Summary;
+
+/// An arrangement with the geometry that its files show.
+#[derive(Debug, Clone, Copy)]
+pub struct Traced<'a> {
+    pub arrangement: &'a Arrangement,
+    /// By edge, in the direction of its even halfedge: points from its origin to its end, both included.
+    pub lines: &'a [Vec<[f64; 2]>],
+    /// Enclosures of the faces' areas, by face; empty if they are not known.
+    pub areas: &'a [Interval],
+}
+
+impl Traced<'_> {
+    /// Where a vertex is drawn: the middle of its enclosure.
+    fn place(&self, vertex: VertexId) -> [f64; 2] {
+        self.arrangement.vertices[vertex as usize].vertex.area.map(Interval::mid)
+    }
+
+    /// The names of curves, as in `circle, line`.
+    fn names(&self, curves: &[u16]) -> String {
+        let names: Vec<&str> = curves.iter().map(|&curve| self.arrangement.curves[usize::from(curve)].as_str()).collect();
+        names.join(", ")
+    }
+
+    /// Where an even halfedge `2e` starts and where it ends.
+    fn ends(&self, edge: usize) -> [VertexId; 2] {
+        [2 * edge, 2 * edge + 1].map(|halfedge| self.arrangement.halfedges[halfedge].origin)
+    }
+}
+
+
+#[cfg(test)]
+mod samples;
