@@ -79,3 +79,20 @@ fn symbol(sign: Sign) -> char {
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\\\""))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arrange::export::samples::sample;
+
+    #[test]
+    fn graphs_have_what_the_arrangement_has() {
+        let text = graph(sample().traced());
+        assert_eq!([text.matches("pos=").count(), text.matches(" -- ").count()], [8, 9]);
+        assert!(text.contains("v10 -- v10 [id=e13, curves=\"circle <1>\", proved=true];"));
+        let text = dual(sample().traced());
+        assert_eq!([text.matches("signs=").count(), text.matches(" -- ").count()], [6, 6]);
+        assert!(text.contains("f1 -- f2 [curves=\"line, copy\"];"), "{text}");
+        assert_eq!(quoted("a\"b"), "\"a\\\"b\"");
+    }
+}

@@ -42,8 +42,16 @@ pub enum Shape {
     Area(Vec<Vec<Point>>),
     /// Open lines.
     Lines(Vec<Vec<Point>>),
-    Disc { centre: Point, radius: f64 },
-    Text { at: Point, anchor: Anchor, size: f64, text: String },
+    Disc {
+        centre: Point,
+        radius: f64,
+    },
+    Text {
+        at: Point,
+        anchor: Anchor,
+        size: f64,
+        text: String,
+    },
 }
 
 /// Which part of a text stands at its place.

@@ -26,7 +26,13 @@ fn feature(id: String, geometry: Option<GeometryValue>, properties: Value) -> Fe
         Value::Object(properties) => Some(properties),
         _ => None,
     };
-    Feature { bbox: None, geometry: geometry.map(Into::into), id: Some(Id::String(id)), properties, foreign_members: None }
+    Feature {
+        bbox: None,
+        geometry: geometry.map(Into::into),
+        id: Some(Id::String(id)),
+        properties,
+        foreign_members: None,
+    }
 }
 
 fn faces(traced: Traced<'_>) -> Vec<Feature> {
@@ -93,4 +99,33 @@ fn vertices(traced: Traced<'_>) -> Vec<Feature> {
 
 fn curves<'a>(traced: Traced<'a>, curves: &[u16]) -> Vec<&'a str> {
     curves.iter().map(|&curve| traced.arrangement.curves[usize::from(curve)].as_str()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arrange::export::samples::sample;
+
+    #[test]
+    fn what_is_written_reads_back_and_winds_as_asked() {
+        let text = geojson(sample().traced());
+        let read: FeatureCollection = text.parse::<geojson::GeoJson>().unwrap().try_into().unwrap();
+        let of = |what: &str| -> Vec<&Feature> {
+            read.features.iter().filter(|feature| feature.property("is") == Some(&json!(what))).collect()
+        };
+        assert_eq!([of("face").len(), of("edge").len(), of("vertex").len()], [6, 9, 8]);
+        for feature in of("face") {
+            let Some(GeometryValue::Polygon { coordinates }) = feature.geometry.as_ref().map(|g| &g.value) else {
+                panic!("{feature:?}");
+            };
+            for (index, ring) in coordinates.iter().enumerate() {
+                assert_eq!(ring.first(), ring.last());
+                // RFC 7946, 3.1.6: outer rings counter-clockwise, holes clockwise.
+                let doubled: f64 = ring.windows(2).map(|ends| ends[0][0] * ends[1][1] - ends[1][0] * ends[0][1]).sum();
+                assert_eq!(doubled > 0.0, index == 0, "{:?}", feature.id);
+            }
+        }
+        let cluster = of("vertex").into_iter().find(|v| v.property("proved") == Some(&json!(false))).unwrap();
+        assert_eq!(cluster.property("note"), Some(&json!("open at \"epsilon\" <1e-6>")));
+    }
 }

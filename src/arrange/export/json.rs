@@ -42,7 +42,11 @@ struct Number(f64);
 
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        if self.0.is_finite() { serializer.serialize_f64(self.0) } else { serializer.serialize_str(&self.0.to_string()) }
+        if self.0.is_finite() {
+            serializer.serialize_f64(self.0)
+        } else {
+            serializer.serialize_str(&self.0.to_string())
+        }
     }
 }
 
@@ -117,7 +121,12 @@ pub fn json(traced: Traced<'_>) -> Result<String, Diagnostic> {
         kind: edge.kind,
         curves: &edge.curves,
         proved: edge.proved,
-        boxes: edge.cells.iter().flat_map(|&cell| &arrangement.complex.cells[cell as usize].boxes).map(|area| area.map(range)).collect(),
+        boxes: edge
+            .cells
+            .iter()
+            .flat_map(|&cell| &arrangement.complex.cells[cell as usize].boxes)
+            .map(|area| area.map(range))
+            .collect(),
         line: line.iter().map(|point| point.map(Number)).collect(),
     });
     let faces = arrangement.faces.iter().enumerate().map(|(index, face)| Face {
@@ -127,7 +136,7 @@ pub fn json(traced: Traced<'_>) -> Result<String, Diagnostic> {
         bounded: face.bounded,
         signs: &face.signs,
         sample: face.sample.map(|point| point.map(Number)),
-        area: traced.areas.get(index).copied().map(range),
+        area: traced.areas.get(index).copied().flatten().map(range),
     });
     let document = Document {
         format: FORMAT,
@@ -143,4 +152,43 @@ pub fn json(traced: Traced<'_>) -> Result<String, Diagnostic> {
     serde_json::to_string(&document)
         .map(|text| text + "\n")
         .map_err(|error| Diagnostic::error(code::INTERNAL, format!("cannot write the arrangement as JSON: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use super::*;
+    use crate::arrange::export::samples::sample;
+
+    #[test]
+    fn numbers_read_back_exactly_and_indices_fit() {
+        let sample = sample();
+        let value: Value = serde_json::from_str(&json(sample.traced()).unwrap()).unwrap();
+        assert_eq!(value["format"], FORMAT);
+        let vertices = value["vertices"].as_array().unwrap();
+        for (vertex, arranged) in vertices.iter().zip(&sample.arrangement.vertices) {
+            for (axis, side) in arranged.vertex.area.iter().enumerate() {
+                let bounds = [0, 1].map(|end| vertex["box"][axis][end].as_f64().unwrap().to_bits());
+                assert_eq!(bounds, [side.lo().to_bits(), side.hi().to_bits()]);
+            }
+        }
+        let halfedges = value["halfedges"].as_array().unwrap();
+        for (index, halfedge) in halfedges.iter().enumerate() {
+            let at = |name: &str| &halfedges[halfedge[name].as_u64().unwrap() as usize];
+            assert_eq!(at("next")["previous"], index);
+            assert_eq!(at("twin")["twin"], index);
+            assert_eq!(at("next")["origin"], at("twin")["origin"]);
+        }
+        let counts = [vertices.len(), halfedges.len(), value["edges"].as_array().unwrap().len()];
+        assert_eq!(counts, [12, 30, 15]);
+        assert_eq!(value["summary"]["vertices"]["loop"], 0);
+        assert_eq!(value["summary"]["faces"], 6);
+        assert_eq!(value["faces"][3]["signs"][1], "negative");
+    }
+
+    #[test]
+    fn infinite_bounds_are_texts() {
+        assert_eq!(serde_json::to_string(&range(Interval::ENTIRE)).unwrap(), r#"["-inf","inf"]"#);
+    }
 }

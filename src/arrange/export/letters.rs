@@ -12,7 +12,8 @@ use crate::arrange::export::drawing::Anchor;
 use crate::arrange::export::drawing::Point;
 
 /// `None` would be a broken font; then nothing is written.
-static FONT: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::try_from_slice(dejavu::sans::regular()).ok());
+static FONT: LazyLock<Option<FontRef<'static>>> =
+    LazyLock::new(|| FontRef::try_from_slice(dejavu::sans::regular()).ok());
 
 /// Pixels from the start of a text to its end.
 pub fn width(size: f64, text: &str) -> f64 {
@@ -38,7 +39,9 @@ pub fn write(builder: &mut PathBuilder, [x, y]: Point, anchor: Anchor, size: f64
         let mut last = None;
         for curve in font.outline(glyph).map_or(Vec::new(), |outline| outline.curves) {
             let start = match curve {
-                OutlineCurve::Line(start, ..) | OutlineCurve::Quad(start, ..) | OutlineCurve::Cubic(start, ..) => at(start),
+                OutlineCurve::Line(start, ..) | OutlineCurve::Quad(start, ..) | OutlineCurve::Cubic(start, ..) => {
+                    at(start)
+                }
             };
             // A curve that does not continue the one before starts a new outline.
             if last != Some(start) {

@@ -1,7 +1,8 @@
 //! An arrangement in files: pictures (SVG, PNG), data (JSON, GeoJSON) and the graph (DOT).
 
+mod canvas;
 pub mod dot;
-mod drawing;
+pub mod drawing;
 pub mod geojson;
 pub mod json;
 mod letters;
@@ -16,7 +17,7 @@ use crate::arrange::structure::Arrangement;
 use crate::arrange::structure::VertexId;
 use crate::interval::Interval;
 
-pub use picture::Style;
+pub use canvas::Style;
 pub use summary::Summary;
 
 /// An arrangement with the geometry that its files show.
@@ -25,8 +26,8 @@ pub struct Traced<'a> {
     pub arrangement: &'a Arrangement,
     /// By edge, in the direction of its even halfedge: points from its origin to its end, both included.
     pub lines: &'a [Vec<[f64; 2]>],
-    /// Enclosures of the faces' areas, by face; empty if they are not known.
-    pub areas: &'a [Interval],
+    /// Enclosures of the faces' areas, by face, where they are known; empty if none was asked for.
+    pub areas: &'a [Option<Interval>],
 }
 
 impl Traced<'_> {
@@ -37,7 +38,8 @@ impl Traced<'_> {
 
     /// The names of curves, as in `circle, line`.
     fn names(&self, curves: &[u16]) -> String {
-        let names: Vec<&str> = curves.iter().map(|&curve| self.arrangement.curves[usize::from(curve)].as_str()).collect();
+        let names: Vec<&str> =
+            curves.iter().map(|&curve| self.arrangement.curves[usize::from(curve)].as_str()).collect();
         names.join(", ")
     }
 
@@ -46,7 +48,6 @@ impl Traced<'_> {
         [2 * edge, 2 * edge + 1].map(|halfedge| self.arrangement.halfedges[halfedge].origin)
     }
 }
-
 
 #[cfg(test)]
 mod samples;

@@ -36,7 +36,10 @@ fn box_around([x, y]: [f64; 2], reach: f64) -> [Interval; 2] {
 }
 
 fn arc([x, y]: [f64; 2], radius: f64, from: f64, to: f64) -> Vec<[f64; 2]> {
-    (0..=40).map(|i| from + (to - from) * f64::from(i) / 40.0).map(|a| [x + radius * a.cos(), y + radius * a.sin()]).collect()
+    (0..=40)
+        .map(|i| from + (to - from) * f64::from(i) / 40.0)
+        .map(|a| [x + radius * a.cos(), y + radius * a.sin()])
+        .collect()
 }
 
 /// Faces: 1 above the line around everything, 2 below it, 3 and 4 the halves of the first circle, 5 between the two circles

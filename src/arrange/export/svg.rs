@@ -1,31 +1,27 @@
-//! Pictures as SVG, in layers that viewers and style sheets can switch: `faces`, `boxes`, `edges`, `unresolved`,
-//! `vertices`, `frame`, `labels`.
+//! Drawings as SVG: layers are groups with the layer's name as `id`, which viewers and style sheets can switch.
 
 use std::fmt::Write;
 
 use maud::Markup;
 use maud::html;
 
-use crate::arrange::export::Traced;
 use crate::arrange::export::drawing::Anchor;
 use crate::arrange::export::drawing::Color;
 use crate::arrange::export::drawing::Drawing;
 use crate::arrange::export::drawing::Mark;
 use crate::arrange::export::drawing::Point;
 use crate::arrange::export::drawing::Shape;
-use crate::arrange::export::picture;
-use crate::arrange::export::picture::Style;
 
-/// The picture as an SVG document.
-pub fn svg(traced: Traced<'_>, style: &Style) -> String {
-    let Drawing { width, height, layers } = picture::draw(traced, style);
+/// The drawing as an SVG document.
+pub fn svg(drawing: &Drawing) -> String {
+    let Drawing { width, height, layers } = drawing;
     let view = format!("0 0 {width} {height}");
     // Every element has an end tag: without one, markup meant for HTML is no XML.
     let markup = html! {
         svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) viewBox=(view)
             font-family="DejaVu Sans, Verdana, sans-serif" stroke-linejoin="round" stroke-linecap="round" {
             rect width=(width) height=(height) fill="#ffffff" {}
-            @for layer in &layers {
+            @for layer in layers {
                 g id=(layer.name) {
                     @for mark in &layer.marks { (element(mark)) "\n" }
                 }
@@ -94,4 +90,32 @@ fn number(value: f64) -> String {
 
 fn hex([r, g, b]: Color) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arrange::export::canvas::Style;
+    use crate::arrange::export::picture;
+    use crate::arrange::export::samples::sample;
+
+    #[test]
+    fn layers_are_groups_and_texts_are_escaped() {
+        let text = svg(&picture::draw(sample().traced(), &Style { boxes: true, ..Style::default() }));
+        let groups: Vec<&str> = text.split("<g id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+        assert_eq!(groups, ["faces", "boxes", "edges", "unresolved", "vertices", "frame", "labels"]);
+        // Six faces, nine edges of which one belongs to two curves, eight vertices; two marks of the cluster.
+        let group =
+            |name: &str| text.split(&format!("<g id=\"{name}\">")).nth(1).unwrap().split("</g>").next().unwrap();
+        let count = |name: &str| group(name).matches("<title>").count();
+        assert_eq!([count("faces"), count("edges"), count("vertices")], [6, 10, 8]);
+        assert_eq!(group("unresolved").matches("#d55e00").count(), 2);
+        assert!(text.contains("circle &lt;1&gt;") && text.contains("arc &amp; co"));
+        assert!(!text.contains("NaN") && !text.contains("inf"));
+        // Whatever is opened is closed: it is XML, not only HTML.
+        for name in ["svg", "g", "rect", "path", "circle", "text", "title"] {
+            let opened = text.matches(&format!("<{name}>")).count() + text.matches(&format!("<{name} ")).count();
+            assert_eq!(opened, text.matches(&format!("</{name}>")).count(), "{name}");
+        }
+    }
 }
