@@ -6,14 +6,20 @@
 //! [`Complex`]; `build` turns that into halfedges and faces. [`published`] is the algorithm as the source has it.
 
 mod assemble;
+pub mod build;
+pub mod check;
 mod cluster;
 pub mod complex;
 pub mod export;
 pub mod field;
 mod functions;
+pub mod index;
 mod local;
+pub mod locate;
+pub mod merge;
 mod newton;
 pub mod options;
+pub mod query;
 mod sides;
 mod solve;
 pub mod structure;
