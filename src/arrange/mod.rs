@@ -13,6 +13,7 @@ pub mod complex;
 pub mod export;
 pub mod field;
 mod functions;
+pub mod geometry;
 pub mod index;
 mod local;
 pub mod locate;

@@ -2,6 +2,7 @@
 //! 1 the user's mistake, 2 ours, 130 interrupted.
 
 mod arguments;
+mod arrange;
 mod cost;
 mod eval;
 mod failure;
@@ -55,6 +56,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Emit(arguments) => text::emit(arguments),
         Command::Eval(arguments) => eval::eval(arguments),
         Command::Repl => Ok(repl::run()?),
+        Command::Arrange(arguments) => arrange::arrange(arguments),
         Command::Cost(arguments) => cost::cost(arguments),
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use crate::arrange::complex::VertexKind;
 use crate::arrange::export::Traced;
-use crate::arrange::export::summary;
+use crate::arrange::export::kind;
 use crate::arrange::structure::EdgeKind;
 use crate::arrange::structure::Sign;
 
@@ -23,10 +23,10 @@ pub fn graph(traced: Traced<'_>) -> String {
         }
         let [x, y] = traced.place(index as u32);
         let at = [scale * (x - horizontal.lo()), scale * (y - vertical.lo())];
-        let (kind, curves) = (summary::kind(vertex.kind), quoted(&traced.names(&vertex.curves)));
+        let (name, curves) = (kind(vertex.kind), quoted(&traced.names(&vertex.curves)));
         writeln!(
             text,
-            "  v{index} [pos=\"{:.3},{:.3}!\", kind={kind}, proved={}, curves={curves}];",
+            "  v{index} [pos=\"{:.3},{:.3}!\", kind={name}, proved={}, curves={curves}];",
             at[0], at[1], vertex.proved
         )
         .expect("a string takes all text");

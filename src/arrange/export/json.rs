@@ -3,10 +3,10 @@
 use serde::Serialize;
 use serde::Serializer;
 
+use crate::arrange::check::Summary;
 use crate::arrange::complex::Effort;
 use crate::arrange::complex::VertexKind;
 use crate::arrange::export::Traced;
-use crate::arrange::export::summary::Summary;
 use crate::arrange::structure::EdgeKind;
 use crate::arrange::structure::Sign;
 use crate::diagnostic::Diagnostic;
@@ -21,7 +21,7 @@ struct Document<'a> {
     format: &'static str,
     domain: [Range; 2],
     curves: &'a [String],
-    summary: Summary,
+    summary: &'a Summary,
     effort: Effort,
     vertices: Vec<Vertex<'a>>,
     halfedges: Vec<Halfedge>,
@@ -142,7 +142,7 @@ pub fn json(traced: Traced<'_>) -> Result<String, Diagnostic> {
         format: FORMAT,
         domain: arrangement.domain.map(range),
         curves: &arrangement.curves,
-        summary: Summary::new(arrangement),
+        summary: traced.summary,
         effort: arrangement.complex.effort,
         vertices: vertices.collect(),
         halfedges: halfedges.collect(),

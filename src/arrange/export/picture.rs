@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::arrange::check::Summary;
 use crate::arrange::complex::Axis;
 use crate::arrange::complex::VertexKind;
 use crate::arrange::export::Traced;
@@ -18,8 +19,8 @@ use crate::arrange::export::drawing::Drawing;
 use crate::arrange::export::drawing::Layer;
 use crate::arrange::export::drawing::Mark;
 use crate::arrange::export::drawing::Shape;
-use crate::arrange::export::summary;
-use crate::arrange::export::summary::Summary;
+use crate::arrange::export::kind;
+use crate::arrange::export::kinds;
 use crate::arrange::structure::ArrangedVertex;
 use crate::arrange::structure::EdgeKind;
 use crate::arrange::structure::Face;
@@ -51,11 +52,9 @@ pub fn draw(traced: Traced<'_>, style: &Style) -> Drawing {
 
 fn legend(traced: Traced<'_>) -> Vec<Entry> {
     let mut entries = Entry::curves(&traced.arrangement.curves);
-    let vertices = Summary::new(traced.arrangement).vertices;
-    let present = vertices.rows().into_iter().filter(|(_, _, count)| *count > 0);
-    entries.extend(
-        present.map(|(kind, name, count)| Entry { symbol: Symbol::Vertex(kind), text: format!("{name} ({count})") }),
-    );
+    for (of, count) in kinds(&traced.summary.vertices).into_iter().filter(|(_, count)| *count > 0) {
+        entries.push(Entry { symbol: Symbol::Vertex(of), text: format!("{} ({count})", kind(of)) });
+    }
     entries
 }
 
@@ -172,9 +171,9 @@ impl Painter<'_> {
     fn vertex(&self, index: usize, ArrangedVertex { vertex, .. }: &ArrangedVertex) -> Mark {
         let [x, y] = vertex.area.map(range);
         let proved = if vertex.proved { "proved" } else { "not proved" };
-        let kind = summary::kind(vertex.kind);
+        let name = kind(vertex.kind);
         let names = self.traced.names(&vertex.curves);
-        let mut title = format!("vertex {index}: {kind}, {proved}\n{names}\nx in {x}\ny in {y}");
+        let mut title = format!("vertex {index}: {name}, {proved}\n{names}\nx in {x}\ny in {y}");
         if let Some(note) = &vertex.note {
             title += &format!("\n{note}");
         }
@@ -183,10 +182,10 @@ impl Painter<'_> {
 }
 
 fn caption(traced: Traced<'_>) -> String {
-    let summary = Summary::new(traced.arrangement);
-    let Summary { edges, faces, .. } = summary;
-    let proved = if summary.proved { "all proved" } else { "not all proved" };
-    format!("{} vertices, {edges} edges, {faces} faces: {proved}", summary.vertices.total())
+    let Summary { vertices, edges, faces, proved, .. } = traced.summary;
+    let count: u64 = kinds(vertices).iter().map(|(_, count)| count).sum();
+    let proved = if *proved { "all proved" } else { "not all proved" };
+    format!("{count} vertices, {edges} edges, {faces} faces: {proved}")
 }
 
 /// An interval with its bounds as shortest decimals.

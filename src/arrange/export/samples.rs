@@ -3,6 +3,8 @@
 
 use std::f64::consts::PI;
 
+use crate::arrange::check::Summary;
+use crate::arrange::check::check;
 use crate::arrange::complex::Block;
 use crate::arrange::complex::Cell;
 use crate::arrange::complex::Complex;
@@ -15,19 +17,22 @@ use crate::arrange::structure::Arrangement;
 use crate::arrange::structure::Edge;
 use crate::arrange::structure::EdgeKind;
 use crate::arrange::structure::Face;
+use crate::arrange::structure::Gaps;
 use crate::arrange::structure::Halfedge;
 use crate::arrange::structure::Sign;
+use crate::arrange::structure::Site;
 use crate::interval::Interval;
 
 /// The arrangement and the lines of its edges.
 pub struct Sample {
+    pub summary: Summary,
     pub arrangement: Arrangement,
     pub lines: Vec<Vec<[f64; 2]>>,
 }
 
 impl Sample {
     pub fn traced(&self) -> Traced<'_> {
-        Traced { arrangement: &self.arrangement, lines: &self.lines, areas: &[] }
+        Traced { arrangement: &self.arrangement, summary: &self.summary, lines: &self.lines, areas: &[] }
     }
 }
 
@@ -133,7 +138,12 @@ pub fn sample() -> Sample {
         .zip(kinds)
         .map(|(id, (kind, at))| {
             let halfedge = halfedge_at(id);
-            ArrangedVertex { vertex: vertex(kind, at), halfedge, face: halfedge.is_none().then_some(1) }
+            ArrangedVertex {
+                vertex: vertex(kind, at),
+                site: Site::Corner,
+                halfedge,
+                face: halfedge.is_none().then_some(1),
+            }
         })
         .collect();
     let face = |outer: Option<u32>, holes: Vec<u32>, bits: u32| Face {
@@ -181,18 +191,10 @@ pub fn sample() -> Sample {
         faces,
         proved: false,
         complex,
+        gaps: Gaps::default(),
+        node_edges: vec![],
         milliseconds: 1.5,
     };
-    Sample { arrangement, lines }
-}
-
-#[test]
-fn the_sample_is_a_subdivision() {
-    let Sample { arrangement, .. } = sample();
-    for (index, halfedge) in arrangement.halfedges.iter().enumerate() {
-        let next = arrangement.halfedges[halfedge.next as usize];
-        assert_eq!(next.previous, index as u32);
-        assert_eq!(next.origin, arrangement.halfedges[index ^ 1].origin, "after halfedge {index}");
-        assert_eq!(next.face, halfedge.face, "after halfedge {index}");
-    }
+    let summary = Summary::new(&arrangement, &check(&arrangement).unwrap());
+    Sample { arrangement, summary, lines }
 }
