@@ -147,7 +147,10 @@ impl<'a> Locator<'a> {
                 let class = beside.find(hit as u32);
                 left.iter_mut().enumerate().for_each(|(k, left)| *left &= beside.find(k as u32) == class);
             }
-            return self.answer(pieces.iter().copied().zip(left).filter(|(_, left)| *left).map(|(piece, _)| piece));
+            let left = pieces.iter().copied().zip(left).filter(|(_, left)| *left).map(|(piece, _)| piece);
+            // Both sides of an edge may be the same face, so the point must be proved to be off all curves too.
+            let off = here.iter().all(|sample| sample.bits & verdict::REFUTED != 0);
+            return if off { self.answer(left) } else { self.undecided(left) };
         }
         // Nothing is known of the inside, so one shot must be clear of everything.
         let sure = |&way: &Direction| {
@@ -320,3 +323,6 @@ impl<'a> Locator<'a> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests;
