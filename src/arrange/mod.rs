@@ -8,6 +8,7 @@
 pub mod complex;
 pub mod field;
 pub mod options;
+pub mod published;
 pub mod structure;
 
 pub use complex::Complex;
