@@ -7,6 +7,7 @@
 
 pub mod complex;
 pub mod field;
+mod functions;
 pub mod options;
 pub mod published;
 pub mod structure;

@@ -7,6 +7,7 @@ mod bounds;
 mod builder;
 mod exact;
 mod fold;
+pub mod zero_set;
 
 use std::fmt;
 
