@@ -47,8 +47,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Grid coordinates are 32-bit numbers.
-    pub const DEEPEST: u32 = 31;
+    /// Parts of a box in proofs may lie [`proof::LEVELS`] deeper, where the number format has hardly any places left.
+    pub const DEEPEST: u32 = 40;
 }
 
 /// The source's choice in its table 4.1, with room for four million nodes.

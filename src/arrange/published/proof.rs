@@ -100,7 +100,7 @@ impl Proofs {
                 self.evaluations += queries.len() as u64;
                 for (part, sample) in parts.iter().zip(evaluate(&queries)) {
                     let of = part.of as usize;
-                    let continuous = part.ground.is_some() || sample.bits & verdict::CONTINUOUS != 0;
+                    let continuous = part.ground.is_some() || sample.is_continuous();
                     if sample.bits & verdict::EMPTY != 0 {
                         continue;
                     }

@@ -189,7 +189,7 @@ impl Tree {
             for &(square, label) in &level[from..to] {
                 let left = self.labels.curves(label).iter().zip(&mut samples);
                 let left: Vec<(u16, u32)> = left
-                    .filter(|(_, sample)| sample.bits & verdict::REFUTED == 0)
+                    .filter(|(_, sample)| !sample.is_refuted())
                     .map(|(&curve, sample)| (curve, sample.bits))
                     .collect();
                 match left[..] {
