@@ -21,6 +21,7 @@ pub mod locate;
 pub mod merge;
 mod newton;
 pub mod options;
+pub mod published;
 pub mod query;
 mod sides;
 mod solve;
