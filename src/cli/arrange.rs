@@ -56,8 +56,7 @@ pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
         ..arrange::Options::default()
     };
     let (arrangement, stopped) = files::interruptible(|cancel| {
-        let control = |progress| Control::new(Some(progress), Some(cancel));
-        watched(|progress| arrange::arrange(&scene, &options, session::backend(), &control(progress)))
+        watched(|progress| compute(&scene, &options, session::backend(), &Control::new(Some(progress), Some(cancel))))
     });
     let arrangement = arrangement.map_err(fail)?;
     let counts = check::check(&arrangement).map_err(|fault| fail(fault.into()))?;
@@ -138,7 +137,8 @@ fn table(path: &Path, arrangement: &Arrangement, summary: &Summary) -> String {
     let mut text = format!("{name}: {total} vertices, {edges} edges, {faces} faces; {said}\n");
     for (kind, count) in rows.into_iter().filter(|(_, count)| *count > 0) {
         let of_kind = open.iter().filter(|vertex| vertex.vertex.kind == kind).count();
-        let note = if of_kind > 0 && kind != VertexKind::Cluster { format!(", {of_kind} not proved") } else { String::new() };
+        let note =
+            if of_kind > 0 && kind != VertexKind::Cluster { format!(", {of_kind} not proved") } else { String::new() };
         push(&mut text, format!("  {:<9} {count:>7}{note}", export::kind(kind)));
     }
     for vertex in open.iter().take(LISTED) {
@@ -176,4 +176,16 @@ fn watched<T>(work: impl FnOnce(&(dyn Fn(usize, usize) + Sync)) -> T) -> T {
     let result = work(&watch);
     bar.finish_and_clear();
     result
+}
+
+fn compute(
+    scene: &crate::program::scene::Scene,
+    options: &arrange::Options,
+    backend: &dyn crate::kernel::Backend,
+    control: &Control<'_>,
+) -> Result<Arrangement, Diagnostic> {
+    let fields = Fields::new(scene, backend)?;
+    let mut arrangement = arrange::build::build(arrange::solve(&fields, options, None, control))?;
+    check::signs(&mut arrangement, &fields);
+    Ok(arrangement)
 }
