@@ -21,6 +21,7 @@ use crate::arrange::check::Summary;
 use crate::arrange::complex::VertexKind;
 use crate::arrange::field::Fields;
 use crate::arrange::options::Options;
+use crate::arrange::solve::replay;
 use crate::arrange::structure::Arrangement;
 use crate::arrange::structure::EdgeKind;
 use crate::arrange::structure::Sign;
@@ -221,7 +222,8 @@ impl Certificate {
     /// # Errors
     /// What is wrong with them.
     fn tiling(&self, fields: &Fields) -> Result<Vec<[Interval; 2]>, String> {
-        let boxes = self.leaves.iter().map(|&[[xl, xh], [yl, yh]]| Some([Interval::new(xl, xh)?, Interval::new(yl, yh)?]));
+        let boxes =
+            self.leaves.iter().map(|&[[xl, xh], [yl, yh]]| Some([Interval::new(xl, xh)?, Interval::new(yl, yh)?]));
         let boxes: Vec<[Interval; 2]> = boxes.collect::<Option<_>>().ok_or("a box of its tiling is none")?;
         let keys: HashSet<[u64; 4]> = boxes.iter().map(key).collect();
         if keys.len() != boxes.len() {
@@ -277,7 +279,7 @@ pub fn verify(
         exact: certificate.exact,
         ..Options::default()
     };
-    let found = super::replay(scene, &options, &leaves, backend, control)?;
+    let found = replay(scene, &options, &leaves, backend, control)?;
     certificate.claim.compare(&found).map_err(rejected)?;
     let counts = check::check(&found)?;
     Ok(Report {

@@ -7,6 +7,7 @@
 
 mod assemble;
 pub mod build;
+pub mod certificate;
 pub mod check;
 mod cluster;
 pub mod complex;

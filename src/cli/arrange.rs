@@ -12,6 +12,8 @@ use indicatif::ProgressStyle;
 use crate::arrange;
 use crate::arrange::Arrangement;
 use crate::arrange::Fields;
+use crate::arrange::certificate;
+use crate::arrange::certificate::Certificate;
 use crate::arrange::check;
 use crate::arrange::check::Summary;
 use crate::arrange::complex::VertexKind;
@@ -28,8 +30,10 @@ use crate::cli::text;
 use crate::control::Control;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
+use crate::interpret::Interpreter;
 use crate::interval::Interval;
 use crate::session;
+use crate::session::Override;
 
 /// Work that takes less time than this shows no progress.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -56,7 +60,9 @@ pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
         ..arrange::Options::default()
     };
     let (arrangement, stopped) = files::interruptible(|cancel| {
-        watched(|progress| compute(&scene, &options, session::backend(), &Control::new(Some(progress), Some(cancel))))
+        watched(|progress| {
+            arrange::arrange(&scene, &options, session::backend(), &Control::new(Some(progress), Some(cancel)))
+        })
     });
     let arrangement = arrangement.map_err(fail)?;
     let counts = check::check(&arrangement).map_err(|fault| fail(fault.into()))?;
@@ -64,6 +70,9 @@ pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
     if !arguments.outputs.is_empty() {
         let fields = Fields::new(&scene, session::backend()).map_err(fail)?;
         write(arguments, &arrangement, &summary, &fields)?;
+    }
+    if let Some(path) = &arguments.certificate {
+        files::write(path, &Certificate::new(&scene, &options, &arrangement).to_bytes())?;
     }
     if arguments.json {
         // Numbers and fixed names always have a JSON form.
@@ -75,6 +84,23 @@ pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
         files::leave_interrupted("stopped: what was still open is in clusters");
     }
     Ok(())
+}
+
+/// `imp verify` for a certificate of an arrangement: everything is decided again with the reference interpreter alone.
+pub fn verify(file: &Path, certificate: &[u8], settings: &[Override]) -> Result<(), Failure> {
+    let (artefact, scene) = text::scene(file, settings)?;
+    let certificate = Certificate::from_bytes(certificate)?;
+    let report = watched(|progress| {
+        certificate::verify(&scene, &certificate, &Interpreter, &Control::new(Some(progress), None))
+    });
+    let report = report.map_err(|diagnostic| Failure::new(artefact.sources, vec![diagnostic]))?;
+    let certificate::Report { summary: Summary { vertices, edges, faces, proved, .. }, leaves, evaluations } = report;
+    let count: u64 = export::kinds(&vertices).iter().map(|(_, count)| count).sum();
+    let proved = if proved { "all proved" } else { "not all proved, as it says" };
+    let text = format!(
+        "verified: {count} vertices, {edges} edges, {faces} faces; {proved}; {leaves} boxes, {evaluations} evaluations\n"
+    );
+    files::print(text.as_bytes())
 }
 
 /// Arranging may take long enough to look first whether there is room for the results.
@@ -176,16 +202,4 @@ fn watched<T>(work: impl FnOnce(&(dyn Fn(usize, usize) + Sync)) -> T) -> T {
     let result = work(&watch);
     bar.finish_and_clear();
     result
-}
-
-fn compute(
-    scene: &crate::program::scene::Scene,
-    options: &arrange::Options,
-    backend: &dyn crate::kernel::Backend,
-    control: &Control<'_>,
-) -> Result<Arrangement, Diagnostic> {
-    let fields = Fields::new(scene, backend)?;
-    let mut arrangement = arrange::build::build(arrange::solve(&fields, options, None, control))?;
-    check::signs(&mut arrangement, &fields);
-    Ok(arrangement)
 }
