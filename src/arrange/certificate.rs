@@ -44,56 +44,59 @@ const MAX_BYTES: u64 = 1 << 32;
 const SLACK: f64 = 1.0 / (1u64 << 44) as f64;
 
 /// A box by the ends of its sides.
-type Ends = [[f64; 2]; 2];
+pub type Ends = [[f64; 2]; 2];
 
 /// The proof of an arrangement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
     /// Of the scene and its parameters.
-    fingerprint: u64,
-    epsilon: Option<f64>,
-    region: u64,
-    exact: bool,
+    pub fingerprint: u64,
+    pub epsilon: Option<f64>,
+    pub region: u64,
+    pub exact: bool,
     /// The leaves of the quadtree, those of clusters among them.
-    leaves: Vec<Ends>,
-    claim: Claim,
+    pub leaves: Vec<Ends>,
+    pub claim: Claim,
 }
 
 /// What is claimed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Claim {
-    proved: bool,
-    vertices: Vec<ClaimedVertex>,
+pub struct Claim {
+    pub proved: bool,
+    pub vertices: Vec<ClaimedVertex>,
     /// Origin, next one and face of each halfedge.
-    halfedges: Vec<[u32; 3]>,
-    edges: Vec<ClaimedEdge>,
-    faces: Vec<ClaimedFace>,
+    pub halfedges: Vec<[u32; 3]>,
+    pub edges: Vec<ClaimedEdge>,
+    pub faces: Vec<ClaimedFace>,
 }
 
+/// That a vertex of this kind is in a box.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct ClaimedVertex {
-    kind: VertexKind,
-    proved: bool,
-    curves: Vec<u16>,
-    area: Ends,
+pub struct ClaimedVertex {
+    pub kind: VertexKind,
+    pub proved: bool,
+    pub curves: Vec<u16>,
+    pub area: Ends,
 }
 
+/// What an edge is and which way it takes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct ClaimedEdge {
-    kind: EdgeKind,
-    proved: bool,
-    curves: Vec<u16>,
+pub struct ClaimedEdge {
+    pub kind: EdgeKind,
+    pub proved: bool,
+    pub curves: Vec<u16>,
     /// The cells that it passes, as positions among the cells of the replayed complex.
-    cells: Vec<u32>,
+    pub cells: Vec<u32>,
 }
 
+/// The boundary of a face and the signs in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct ClaimedFace {
-    outer: Option<u32>,
-    holes: Vec<u32>,
-    isolated: Vec<u32>,
-    bounded: bool,
-    signs: Vec<Sign>,
+pub struct ClaimedFace {
+    pub outer: Option<u32>,
+    pub holes: Vec<u32>,
+    pub isolated: Vec<u32>,
+    pub bounded: bool,
+    pub signs: Vec<Sign>,
 }
 
 impl Claim {
