@@ -159,7 +159,7 @@ fn a_certificate_that_claims_anything_else_is_rejected() {
     let scene = artefact.scene.unwrap();
     let options = Options::default();
     let arrangement = arrange(&scene, &options, session::backend(), &Control::default()).unwrap();
-    let honest = Certificate::new(&scene, &options, &arrangement);
+    let honest = Certificate::new(&scene, &options, &arrangement, &Interpreter).unwrap();
     assert_eq!(Certificate::from_bytes(&honest.to_bytes()).unwrap(), honest);
     let answer =
         |certificate: &Certificate| certificate::verify(&scene, certificate, &Interpreter, &Control::default());

@@ -178,17 +178,33 @@ impl Claim {
 }
 
 impl Certificate {
-    /// The certificate of what was found for a scene with these options.
-    pub fn new(scene: &Scene, options: &Options, arrangement: &Arrangement) -> Self {
-        let ends = |area: &[Interval; 2]| area.map(|side| [side.lo(), side.hi()]);
-        Self {
+    /// The certificate of what was found for a scene with these options. Enclosures of compiled kernels and of the
+    /// reference differ in their last places, so what is claimed is what the reference itself finds on the same boxes.
+    ///
+    /// # Errors
+    /// If that is something else (`E0506`), or the reference fails.
+    pub fn new(
+        scene: &Scene,
+        options: &Options,
+        arrangement: &Arrangement,
+        reference: &dyn Backend,
+    ) -> Result<Self, Diagnostic> {
+        let boxes: Vec<[Interval; 2]> =
+            arrangement.complex.cells.iter().flat_map(|c| c.boxes.iter().copied()).collect();
+        let found = replay(scene, options, &boxes, reference, &Control::default())?;
+        if check::check(&found)? != check::check(arrangement)? {
+            let title =
+                "the reference interpreter finds another arrangement on these boxes, so there is no certificate";
+            return Err(Diagnostic::error(code::NO_CERTIFICATE, title).help("try a smaller `--epsilon`"));
+        }
+        Ok(Self {
             fingerprint: fingerprint(scene),
             epsilon: options.epsilon,
             region: options.region as u64,
             exact: options.exact,
-            leaves: arrangement.complex.cells.iter().flat_map(|cell| &cell.boxes).map(ends).collect(),
-            claim: Claim::new(arrangement),
-        }
+            leaves: boxes.iter().map(|area| area.map(|side| [side.lo(), side.hi()])).collect(),
+            claim: Claim::new(&found),
+        })
     }
 
     /// Whether bytes begin as a certificate of an arrangement does.

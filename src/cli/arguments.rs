@@ -189,6 +189,9 @@ pub struct ArrangeArguments {
     /// Boxes with both sides at most E are not split; what is open there stays a cluster [default: 2^-30 of the domain].
     #[arg(long, value_name = "E", value_parser = values::positive)]
     pub epsilon: Option<f64>,
+    /// What decides.
+    #[arg(long, value_enum, default_value_t = MethodArgument::Certified)]
+    pub method: MethodArgument,
     /// Print one JSON object instead of a table.
     #[arg(long)]
     pub json: bool,
@@ -216,6 +219,14 @@ pub struct ArrangeArguments {
     /// Write what `imp verify` needs to check the arrangement.
     #[arg(long, value_name = "OUT")]
     pub certificate: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodArgument {
+    /// Interval proofs and exact arithmetic: what is not proved is said.
+    Certified,
+    /// CAPS as its source has it, for comparison: a labelled quadtree and the graph of its regions.
+    Published,
 }
 
 /// A file for an arrangement and what goes into it.

@@ -20,10 +20,14 @@ use crate::arrange::complex::VertexKind;
 use crate::arrange::export;
 use crate::arrange::export::Style;
 use crate::arrange::export::Traced;
+use crate::arrange::export::regions::Counts;
 use crate::arrange::geometry;
+use crate::arrange::published;
+use crate::arrange::published::Limits;
 use crate::cli::arguments::ArrangeArguments;
 use crate::cli::arguments::DrawingArgument;
 use crate::cli::arguments::DrawingFormat;
+use crate::cli::arguments::MethodArgument;
 use crate::cli::failure::Failure;
 use crate::cli::files;
 use crate::cli::text;
@@ -44,6 +48,17 @@ const LISTED: usize = 10;
 /// `imp arrange FILE`.
 pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
     check_outputs(arguments)?;
+    match arguments.threads {
+        None => work(arguments),
+        Some(count) => {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(count.into()).build();
+            let failed = |error| Diagnostic::error(code::NO_THREADS, format!("cannot start {count} threads: {error}"));
+            pool.map_err(failed)?.install(|| work(arguments))
+        }
+    }
+}
+
+fn work(arguments: &ArrangeArguments) -> Result<(), Failure> {
     let (artefact, scene) = text::scene(&arguments.file, &arguments.settings)?;
     let fail = |diagnostic| Failure::new(artefact.sources.clone(), vec![diagnostic]);
     if scene.dimension() != 2 {
@@ -52,10 +67,12 @@ pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
         let help = format!("draw it with `imp render {name}`, or write curves in x and y and `domain [-2, 2]^2`");
         return Err(Diagnostic::error(code::BAD_OPTION, title).help(help).into());
     }
+    if arguments.method == MethodArgument::Published {
+        return published(arguments, &Fields::new(&scene, session::backend()).map_err(fail)?);
+    }
     let options = arrange::Options {
         epsilon: arguments.epsilon,
         exact: !arguments.no_exact,
-        threads: arguments.threads.map(usize::from),
         tolerance: arguments.tolerance,
         ..arrange::Options::default()
     };
@@ -72,7 +89,8 @@ pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
         write(arguments, &arrangement, &summary, &fields)?;
     }
     if let Some(path) = &arguments.certificate {
-        files::write(path, &Certificate::new(&scene, &options, &arrangement).to_bytes())?;
+        let certificate = Certificate::new(&scene, &options, &arrangement, &Interpreter).map_err(fail)?;
+        files::write(path, &certificate.to_bytes())?;
     }
     if arguments.json {
         // Numbers and fixed names always have a JSON form.
@@ -82,6 +100,50 @@ pub fn arrange(arguments: &ArrangeArguments) -> Result<(), Failure> {
     }
     if stopped {
         files::leave_interrupted("stopped: what was still open is in clusters");
+    }
+    Ok(())
+}
+
+/// The algorithm as its source has it.
+fn published(arguments: &ArrangeArguments, fields: &Fields) -> Result<(), Failure> {
+    let other =
+        arguments.outputs.iter().find(|output| matches!(output.format, DrawingFormat::Json | DrawingFormat::GeoJson));
+    if arguments.certificate.is_some() || other.is_some() {
+        let title =
+            "the published algorithm makes pictures and a graph of regions, but no structure and no certificate";
+        return Err(Diagnostic::error(code::BAD_OPTION, title).help("write SVG, PNG or DOT").into());
+    }
+    let limits = Limits { epsilon: arguments.epsilon.unwrap_or(Limits::default().epsilon), ..Limits::default() };
+    let start = Instant::now();
+    let (graph, stopped) = files::interruptible(|cancel| {
+        watched(|progress| published::solve(fields, &limits, &Control::new(Some(progress), Some(cancel))))
+    });
+    let counts = Counts::new(&graph, 1e3 * start.elapsed().as_secs_f64());
+    let style = Style { size: arguments.size, boxes: arguments.boxes };
+    for DrawingArgument { path, format } in &arguments.outputs {
+        let drawing = || export::regions::draw(&graph, &fields.curves, &style);
+        let bytes = match format {
+            DrawingFormat::Svg => export::svg::svg(&drawing()).into_bytes(),
+            DrawingFormat::Png => export::png::png(&drawing())?,
+            _ => export::regions::dot(&graph).into_bytes(),
+        };
+        files::write(path, &bytes)?;
+    }
+    let text = match arguments.json {
+        // Numbers and fixed names always have a JSON form.
+        true => serde_json::to_string(&counts).unwrap_or_default() + "\n",
+        false => {
+            let Counts { vertices, edges, faces, indeterminate, exact, delta, boxes, ms } = counts;
+            let exact = if exact { "its claim of exactness applies" } else { "its claim of exactness does not apply" };
+            format!(
+                "{}: regions of the published algorithm: {vertices} vertices, {edges} edges, {faces} faces, {indeterminate} undecided\n  {exact}; delta {delta:.1e}\n  {boxes} boxes, {ms:.1} ms\n",
+                arguments.file.display(),
+            )
+        }
+    };
+    files::print(text.as_bytes())?;
+    if stopped {
+        files::leave_interrupted("stopped: what was still open is left as it was");
     }
     Ok(())
 }

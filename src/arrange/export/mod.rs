@@ -9,6 +9,7 @@ mod letters;
 mod paint;
 pub mod picture;
 pub mod png;
+pub mod regions;
 mod rings;
 pub mod svg;
 

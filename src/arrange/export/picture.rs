@@ -146,7 +146,8 @@ impl Painter<'_> {
             }
         }
         for (edge, line) in arrangement.edges.iter().zip(self.traced.lines) {
-            if edge.kind == EdgeKind::Strip || !edge.proved {
+            // Other edges are proved but for their ends, which have marks of their own.
+            if edge.kind == EdgeKind::Strip {
                 let (width, dash) = (1.4 * self.canvas.unit, [2.0 * self.canvas.unit, 5.0 * self.canvas.unit]);
                 marks.push(Mark::stroked(Shape::Lines(vec![self.canvas.line(line)]), UNKNOWN, width).dashed(dash));
             }
