@@ -7,10 +7,12 @@
 
 mod assemble;
 pub mod build;
+pub mod certificate;
 pub mod check;
 mod cluster;
 pub mod complex;
 pub mod exact;
+pub mod export;
 pub mod field;
 mod functions;
 pub mod geometry;
@@ -20,6 +22,7 @@ pub mod locate;
 pub mod merge;
 mod newton;
 pub mod options;
+pub mod published;
 pub mod query;
 mod settle;
 mod sides;
