@@ -3,17 +3,24 @@
 //!
 //! Stages, each a pure function of the one before: `subdivide` quarters the box until each cell is settled or too
 //! small, `sides` isolates where curves cross the sides of cells, `local` joins these nodes within each cell, together a
-//! [`Complex`]; `build` turns that into halfedges and faces. [`published`] is the algorithm as the source has it.
+//! [`Complex`]; [`build`](mod@build) turns that into halfedges and faces. [`published`] is the algorithm as the source has it.
 
 mod assemble;
+pub mod build;
+pub mod check;
 mod cluster;
 pub mod complex;
+pub mod exact;
 pub mod field;
 mod functions;
+pub mod index;
 mod local;
+pub mod locate;
+pub mod merge;
 mod newton;
 pub mod options;
 pub mod published;
+pub mod query;
 mod sides;
 mod solve;
 pub mod structure;

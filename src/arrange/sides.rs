@@ -152,7 +152,7 @@ impl<'a> Isolator<'a> {
         let mut spans = Vec::with_capacity(sides.len());
         for side in sides {
             let start = requests.len();
-            requests.extend(shared(side, leaves).map(|component| Request { side: *side, component }));
+            requests.extend(shared(side, leaves).into_iter().map(|component| Request { side: *side, component }));
             spans.push(start..requests.len());
         }
         let fresh: Vec<Request> = requests.iter().filter(|r| !self.known.contains_key(&r.key())).copied().collect();
@@ -334,15 +334,22 @@ impl<'a> Isolator<'a> {
     }
 }
 
-/// The components that may cross a side: those that may meet both its neighbours. Sides inside a cluster need none.
-fn shared<'l>(side: &Side, leaves: &'l [Leaf]) -> impl Iterator<Item = u32> + use<'l> {
-    let [first, second] = side.leaves.map(|leaf| leaf.map(|leaf| &leaves[leaf as usize]));
-    let (one, other) = match (first, second) {
-        (Some(first), Some(second)) if first.open && second.open => (None, None),
-        (Some(first), second) => (Some(first), second),
-        (None, second) => (second, None),
-    };
-    one.into_iter().flat_map(|leaf| &leaf.active).map(|active| active.component).filter(move |component| {
-        other.is_none_or(|leaf| leaf.active.binary_search_by_key(component, |active| active.component).is_ok())
-    })
+/// The components that may cross a side with a curve on one side of it: their zero sets may meet both neighbours. Sides
+/// inside a cluster need none.
+fn shared(side: &Side, leaves: &[Leaf]) -> Vec<u32> {
+    let neighbours = side.leaves.map(|leaf| leaf.map(|leaf| &leaves[leaf as usize]));
+    let active = |leaf: &Leaf| leaf.active.iter().map(|active| active.component).collect::<Vec<u32>>();
+    match neighbours {
+        [Some(first), Some(second)] if first.open && second.open => Vec::new(),
+        [Some(first), Some(second)] => {
+            let meets = |leaf: &Leaf, component: &u32| {
+                leaf.active.iter().any(|active| active.component == *component) || leaf.silent.contains(component)
+            };
+            let mut shared = active(first);
+            shared.retain(|component| meets(second, component));
+            shared.extend(active(second).into_iter().filter(|component| first.silent.contains(component)));
+            shared
+        }
+        [one, other] => one.or(other).map(active).unwrap_or_default(),
+    }
 }

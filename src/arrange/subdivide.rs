@@ -38,6 +38,8 @@ pub struct Work {
     pub grid: [u64; 2],
     /// Components not yet excluded.
     pub candidates: Vec<u32>,
+    /// Components that may have zeros here but no curve, since their conditions are proved false.
+    pub silent: Vec<u32>,
 }
 
 /// A component that may meet a leaf.
@@ -58,6 +60,8 @@ pub struct Leaf {
     pub grid: [u64; 2],
     /// By rising component.
     pub active: Vec<Active>,
+    /// Components that may have zeros in the leaf but no curve: where a curve ends on the way here its zero set goes on.
+    pub silent: Vec<u32>,
     /// Pairs of indices into `active` that cross at most once in the leaf; all other pairs have no point in common.
     pub crossing: Vec<(u8, u8)>,
     /// Whether the claims of a settled leaf could not be proved.
@@ -81,13 +85,13 @@ impl Work {
     /// The whole domain.
     pub fn root(fields: &Fields) -> Self {
         let candidates = (0..fields.components.len() as u32).collect();
-        Self { area: fields.domain, depth: 0, grid: [0; 2], candidates }
+        Self { area: fields.domain, depth: 0, grid: [0; 2], candidates, silent: Vec::new() }
     }
 
     /// A leaf again.
     pub fn of(leaf: &Leaf) -> Self {
         let candidates = leaf.active.iter().map(|active| active.component).collect();
-        Self { area: leaf.area, depth: leaf.depth, grid: leaf.grid, candidates }
+        Self { area: leaf.area, depth: leaf.depth, grid: leaf.grid, candidates, silent: leaf.silent.clone() }
     }
 
     /// The four quarters; `None` if there are no numbers between the ends.
@@ -106,6 +110,7 @@ impl Work {
             depth: self.depth + 1,
             grid: [2 * self.grid[0] + i as u64, 2 * self.grid[1] + j as u64],
             candidates: self.candidates.clone(),
+            silent: self.silent.clone(),
         }))
     }
 }
@@ -113,6 +118,7 @@ impl Work {
 /// What one round found of a box.
 struct Decision {
     active: Vec<Active>,
+    silent: Vec<u32>,
     crossing: Vec<(u8, u8)>,
     settled: bool,
 }
@@ -137,14 +143,15 @@ impl Subdivision<'_> {
             let decisions = if control.is_cancelled() { undecided(&frontier) } else { self.decide(&frontier) };
             let mut next = Vec::new();
             for (work, decision) in frontier.into_iter().zip(decisions) {
-                let Decision { active, crossing, settled } = decision;
-                let work = Work { candidates: active.iter().map(|active| active.component).collect(), ..work };
+                let Decision { active, silent, crossing, settled } = decision;
+                let candidates = active.iter().map(|active| active.component).collect();
+                let work = Work { candidates, silent: [work.silent, silent].concat(), ..work };
                 let quarters = if settled || control.is_cancelled() { None } else { self.split(&work) };
                 match quarters {
                     Some(quarters) => next.extend(quarters),
                     None => {
-                        let Work { area, depth, grid, .. } = work;
-                        leaves.push(Leaf { area, depth, grid, active, crossing, open: !settled });
+                        let Work { area, depth, grid, silent, .. } = work;
+                        leaves.push(Leaf { area, depth, grid, active, silent, crossing, open: !settled });
                     }
                 }
             }
@@ -201,9 +208,10 @@ impl Subdivision<'_> {
                 kept.push(work);
                 continue;
             }
-            let Work { area, depth, grid, candidates } = work;
+            let Work { area, depth, grid, candidates, silent } = work;
             let active = candidates.into_iter().map(|component| Active { component, axis: None, conditional: true });
-            leaves.push(Leaf { area, depth, grid, active: active.collect(), crossing: Vec::new(), open: true });
+            let (active, crossing) = (active.collect(), Vec::new());
+            leaves.push(Leaf { area, depth, grid, active, silent, crossing, open: true });
         }
         kept
     }
@@ -231,8 +239,12 @@ impl Subdivision<'_> {
             found.push(met);
         }
         self.centres(works, &mut found);
-        self.conditions(works, &mut found);
-        self.settle(works, found)
+        let silent = self.conditions(works, &mut found);
+        let mut decisions = self.settle(works, found);
+        for (decision, silent) in decisions.iter_mut().zip(silent) {
+            decision.silent = silent;
+        }
+        decisions
     }
 
     /// Excludes components by their centred form.
@@ -252,8 +264,8 @@ impl Subdivision<'_> {
         }
     }
 
-    /// Decides conditions, and drops components whose conditions are false.
-    fn conditions(&mut self, works: &[Work], found: &mut [Vec<Met>]) {
+    /// Decides conditions, and takes out components whose conditions are false: by box.
+    fn conditions(&mut self, works: &[Work], found: &mut [Vec<Met>]) -> Vec<Vec<u32>> {
         let fields = self.fields;
         let uses = |met: &Met| fields.components[met.component as usize].uses.iter();
         let mut queries = Vec::new();
@@ -261,7 +273,9 @@ impl Subdivision<'_> {
             queries.extend(met.iter().flat_map(uses).filter_map(|used| Some((used.condition?, work.area))));
         }
         let mut samples = self.evaluate(&queries).into_iter();
+        let mut silent = Vec::with_capacity(works.len());
         for met in found {
+            let mut dropped = Vec::new();
             met.retain_mut(|met| {
                 met.uses = uses(met)
                     .map(|used| match used.condition {
@@ -269,9 +283,15 @@ impl Subdivision<'_> {
                         Some(_) => truth(&samples.next().expect("one sample for each query")),
                     })
                     .collect();
-                met.uses.iter().any(|&truth| truth != Some(false))
+                let kept = met.uses.iter().any(|&truth| truth != Some(false));
+                if !kept {
+                    dropped.push(met.component);
+                }
+                kept
             });
+            silent.push(dropped);
         }
+        silent
     }
 
     fn settle(&mut self, works: &[Work], found: Vec<Vec<Met>>) -> Vec<Decision> {
@@ -350,7 +370,8 @@ enum Relation {
 fn undecided(works: &[Work]) -> Vec<Decision> {
     let open = |work: &Work| {
         let active = work.candidates.iter().map(|&component| Active { component, axis: None, conditional: true });
-        Decision { active: active.collect(), crossing: Vec::new(), settled: work.candidates.is_empty() }
+        let settled = work.candidates.is_empty();
+        Decision { active: active.collect(), silent: Vec::new(), crossing: Vec::new(), settled }
     };
     works.iter().map(open).collect()
 }
@@ -417,7 +438,7 @@ fn pairs(area: [Interval; 2], met: &[Met]) -> Decision {
     }
     // Several crossings in one leaf are told apart by more quartering.
     settled &= crossing.len() <= 1 || active.len() == 2;
-    Decision { active, crossing, settled }
+    Decision { active, silent: Vec::new(), crossing, settled }
 }
 
 /// The relation of two components on a box, if it can be proved. Both are continuous where it is.
