@@ -295,7 +295,8 @@ impl Subdivision<'_> {
     }
 
     fn settle(&mut self, works: &[Work], found: Vec<Vec<Met>>) -> Vec<Decision> {
-        let mut decisions: Vec<Decision> = works.iter().zip(&found).map(|(work, met)| pairs(work.area, met)).collect();
+        let mut decisions: Vec<Decision> =
+            works.iter().zip(&found).map(|(work, met)| pairs(self.fields, work.area, met)).collect();
         // Where everything but conditions is settled, their atoms are asked.
         let mut queries = Vec::new();
         let fields = self.fields;
@@ -414,7 +415,7 @@ fn regular(sample: &Sample) -> Option<Axis> {
 }
 
 /// Regularity of each component and relations of all pairs.
-fn pairs(area: [Interval; 2], met: &[Met]) -> Decision {
+fn pairs(fields: &Fields, area: [Interval; 2], met: &[Met]) -> Decision {
     let active: Vec<Active> = met
         .iter()
         .map(|met| Active {
@@ -428,6 +429,9 @@ fn pairs(area: [Interval; 2], met: &[Met]) -> Decision {
     if settled {
         for j in 1..met.len() {
             for i in 0..j {
+                if fields.are_disjoint(met[i].component, met[j].component) {
+                    continue;
+                }
                 match relation(area, &met[i], &met[j]) {
                     Some(Relation::Apart) => {}
                     Some(Relation::Transversal) => crossing.push((i as u8, j as u8)),
