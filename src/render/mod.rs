@@ -21,7 +21,6 @@ mod outcome;
 mod picture;
 mod plan;
 mod plane;
-mod poles;
 mod programs;
 mod shade;
 mod solve;

@@ -19,6 +19,7 @@ use crate::kernel::Backend;
 use crate::kernel::Kernel;
 use crate::kernel::Real;
 use crate::passes;
+use crate::passes::zero_set::numerator;
 use crate::program::scene::COORDINATES;
 use crate::program::scene::Parameter;
 use crate::program::scene::Projection;
@@ -26,7 +27,6 @@ use crate::program::scene::Scene;
 use crate::program::scene::Shape;
 use crate::program::scene::ShapeKind;
 use crate::render::batch::Program;
-use crate::render::poles::numerator;
 
 /// The inputs of centred forms and of values at a cell's end.
 const CENTRE: &str = "ray_m";
