@@ -199,8 +199,11 @@ impl<'a> Decider<'a> {
             // Patches of a pixel are neighbours in the list, since their parents were.
             patches = Vec::new();
             for run in open.chunk_by(|a, b| a.0.pixel == b.0.pixel) {
-                if run.len() > PARTS || level == QUARTERINGS {
-                    known[run[0].0.pixel].open = true;
+                let known = &mut known[run[0].0.pixel];
+                // Where not even points have a sign, quartering is no use.
+                let blunt = known.sound && known.signs == 0;
+                if run.len() > PARTS || level == QUARTERINGS || blunt {
+                    known.open = true;
                 } else {
                     let parts =
                         run.iter().flat_map(|(patch, _)| quarters(patch.area).map(|area| Patch { area, ..*patch }));

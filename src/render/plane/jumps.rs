@@ -67,11 +67,15 @@ impl Jumps {
         if let Some(&input) = self.inputs.get(&step) {
             return input;
         }
-        // No parameter has a name with a blank in it.
-        let name = format!("step {}", self.steps.len());
+        let name = step_name(self.steps.len());
         let input = graph.var(&name);
         self.steps.push((step, name));
         self.inputs.insert(step, input);
         input
     }
+}
+
+/// The name of the input for a step function; no parameter has a name with a blank in it.
+pub fn step_name(step: usize) -> String {
+    format!("step {step}")
 }

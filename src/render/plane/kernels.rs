@@ -3,15 +3,19 @@
 use crate::derive::Precision;
 use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
+use crate::graph::Graph;
 use crate::interval::Interval;
 use crate::kernel::Backend;
 use crate::kernel::verdict;
+use crate::passes::bounds;
+use crate::program::scene::COORDINATES;
 use crate::program::scene::Parameter;
 use crate::program::scene::Shape;
 use crate::render::batch::Batch;
 use crate::render::batch::Program;
 use crate::render::march::GROUPS;
 use crate::render::plan::Plan;
+use crate::render::plane::jumps::step_name;
 use crate::render::plane::system::EQUATIONS;
 use crate::render::plane::system::ShapeSpecs;
 use crate::render::programs::Compiled;
@@ -35,6 +39,7 @@ struct SystemKernel {
     equations: usize,
     condition: bool,
     total: Vec<[bool; 2]>,
+    formulas: Graph,
 }
 
 impl Kernels {
@@ -58,14 +63,29 @@ impl Kernels {
             let kernel = compiled(system.spec)?;
             let compiled = plan.kernel(shape, "piece", double, kernel, "settles what stays open of pixels");
             let (equations, condition) = (system.equations, system.condition);
-            systems.push(SystemKernel { compiled, equations, condition, total: system.total });
+            let (total, formulas) = (system.total, system.formulas);
+            systems.push(SystemKernel { compiled, equations, condition, total, formulas });
         }
         Ok(Self { steps, total, systems })
     }
 
     /// The kernels on values of the parameters.
     pub fn bind(&self, parameters: &[Parameter]) -> Bound<'_> {
-        let systems = self.systems.iter().map(|system| (system, system.compiled.bind(parameters, &[]))).collect();
+        let systems = self.systems.iter().map(|system| {
+            let inputs = system.formulas.variables().iter().map(|name| {
+                let step = (0..STEPS).find(|&step| *name == step_name(step));
+                match (COORDINATES.iter().position(|coordinate| coordinate == name), step) {
+                    (Some(axis), _) => Input::Coordinate(axis),
+                    (None, Some(step)) => Input::Step(step),
+                    (None, None) => {
+                        let parameter = parameters.iter().find(|parameter| parameter.name == *name);
+                        Input::Fixed(parameter.map_or(Interval::ENTIRE, |parameter| parameter.value))
+                    }
+                }
+            });
+            BoundSystem { kernel: system, program: system.compiled.bind(parameters, &[]), inputs: inputs.collect() }
+        });
+        let systems = systems.collect();
         Bound { steps: self.steps.as_ref().map(|steps| steps.bind(parameters, &[])), total: &self.total, systems }
     }
 }
@@ -74,7 +94,21 @@ impl Kernels {
 pub struct Bound<'a> {
     steps: Option<Program<f64>>,
     total: &'a [bool],
-    systems: Vec<(&'a SystemKernel, Program<f64>)>,
+    systems: Vec<BoundSystem<'a>>,
+}
+
+struct BoundSystem<'a> {
+    kernel: &'a SystemKernel,
+    program: Program<f64>,
+    inputs: Vec<Input>,
+}
+
+/// What an input of a formula stands for.
+#[derive(Debug, Clone, Copy)]
+enum Input {
+    Coordinate(usize),
+    Step(usize),
+    Fixed(Interval),
 }
 
 impl<'a> Bound<'a> {
@@ -84,13 +118,15 @@ impl<'a> Bound<'a> {
     }
 
     /// What one worker needs for one system.
-    pub fn evaluator(&self, system: usize) -> Evaluator<'a> {
-        let (kernel, program) = &self.systems[system];
+    pub fn evaluator(&self, system: usize) -> Evaluator<'_> {
+        let BoundSystem { kernel, program, inputs } = &self.systems[system];
         Evaluator {
             steps: self.steps.as_ref().map(|steps| Batch::new(steps, GROUPS)),
             total: self.total,
             batch: Batch::new(program, GROUPS),
             kernel,
+            inputs,
+            exact: 0,
         }
     }
 }
@@ -147,11 +183,14 @@ pub struct Evaluator<'a> {
     total: &'a [bool],
     batch: Batch<f64>,
     kernel: &'a SystemKernel,
+    inputs: &'a [Input],
+    /// Evaluations without a kernel.
+    exact: u64,
 }
 
 impl Evaluator<'_> {
     pub fn evaluations(&self) -> u64 {
-        self.batch.evaluations + self.steps.as_ref().map_or(0, |steps| steps.evaluations)
+        self.exact + self.batch.evaluations + self.steps.as_ref().map_or(0, |steps| steps.evaluations)
     }
 
     /// For each box the cases in which the step functions can be there: none if some step function is undefined on all of
@@ -226,6 +265,20 @@ impl Evaluator<'_> {
             }
         }
         samples
+    }
+
+    /// Encloses an equation's left side at a point by the interval library, which is slow and knows sines of numbers for which
+    /// the kernels' reduction is not exact.
+    pub fn enclose(&mut self, equation: usize, case: &Case) -> Interval {
+        self.exact += 1;
+        let formulas = &self.kernel.formulas;
+        let input = |input: &Input| match *input {
+            Input::Coordinate(axis) => case.area[axis],
+            Input::Step(step) => Interval::point(case.steps[step]),
+            Input::Fixed(value) => value,
+        };
+        let inputs: Vec<Interval> = self.inputs.iter().map(input).collect();
+        bounds(formulas, &inputs, &[])[formulas.outputs()[equation].1.index()].interval()
     }
 
     fn sample(&self, lane: usize) -> Sample {

@@ -15,6 +15,7 @@ use crate::render::plane::kernels::Sample;
 use crate::render::plane::raster::corners;
 use crate::render::plane::raster::quarters;
 use crate::render::plane::search::search;
+use crate::render::plane::search::search_exactly;
 use crate::render::plane::solution::Solutions;
 use crate::render::plane::solution::centred;
 use crate::render::plane::solution::solve;
@@ -46,6 +47,8 @@ pub struct Pixel {
     crossed: bool,
     /// Parts have been dropped without being decided.
     lost: bool,
+    /// Nothing more is tried.
+    given_up: bool,
 }
 
 /// A part of a pixel.
@@ -77,6 +80,7 @@ pub fn settle(evaluator: &mut Evaluator, solid: bool, areas: &[[Interval; 2]]) -
         outside: false,
         crossed: false,
         lost: false,
+        given_up: false,
     };
     let mut pixels: Vec<Pixel> = areas.iter().map(blank).collect();
     let mut patches: Vec<Patch> = areas.iter().enumerate().map(|(pixel, &area)| Patch { pixel, area }).collect();
@@ -88,15 +92,24 @@ pub fn settle(evaluator: &mut Evaluator, solid: bool, areas: &[[Interval; 2]]) -
         };
         let crowded: Vec<usize> =
             count(&open).into_iter().filter(|&(_, parts)| parts > PARTS).map(|(pixel, _)| pixel).collect();
-        let searched: Vec<usize> =
-            crowded.iter().copied().filter(|&index| pixels[index].equation.is_some() && !pixels[index].lost).collect();
-        for index in search(evaluator, &pixels, &searched) {
+        // Where not even points have a sign, the kernels know too little of the field.
+        let blunt = count(&open).into_iter().map(|(pixel, _)| pixel).filter(|&pixel| pixels[pixel].signs == 0);
+        let blunt = if level == 0 { blunt.collect() } else { Vec::new() };
+        let searchable = |index: &usize| pixels[*index].equation.is_some() && !pixels[*index].lost;
+        let [blunt, fine] = [&blunt, &crowded].map(|list| list.iter().copied().filter(searchable).collect::<Vec<_>>());
+        let found = search_exactly(evaluator, &pixels, &blunt);
+        let found = found.into_iter().chain(search(evaluator, &pixels, &fine)).collect::<Vec<_>>();
+        for index in found {
             pixels[index].crossed = true;
         }
         for &pixel in &crowded {
             pixels[pixel].lost = true;
         }
-        open.retain(|patch| !pixels[patch.pixel].crossed);
+        // A search all over the pixel has found nothing in these; following a few parts would not either.
+        for pixel in fine {
+            pixels[pixel].given_up = true;
+        }
+        open.retain(|patch| !pixels[patch.pixel].crossed && !pixels[patch.pixel].given_up);
         if level == QUARTERINGS {
             open.iter().for_each(|patch| pixels[patch.pixel].lost = true);
             break;
@@ -175,7 +188,11 @@ fn round(evaluator: &mut Evaluator, solid: bool, pixels: &mut [Pixel], patches: 
         if pixel.equation == Some(equation) {
             pixel.signs |= signs;
         }
-        if signs == BOTH || pixel.signs == BOTH {
+        let zero = corners.iter().any(|sample| {
+            let at_corner = &sample.estimates()[equation];
+            at_corner.value == Interval::ZERO && at_corner.bits & verdict::CONTINUOUS != 0
+        });
+        if signs == BOTH || pixel.signs == BOTH || zero {
             findings[index] = Finding::Crossed;
         }
     }

@@ -54,6 +54,27 @@ pub fn search(evaluator: &mut Evaluator, pixels: &[Pixel], chosen: &[usize]) -> 
     crossed
 }
 
+/// The same by the interval library, point by point.
+pub fn search_exactly(evaluator: &mut Evaluator, pixels: &[Pixel], chosen: &[usize]) -> Vec<usize> {
+    let mut found = |index: usize| {
+        let mut hunt = Hunt::new(&pixels[index], index)?;
+        for round in 0..ROUNDS {
+            for point in hunt.points(round) {
+                let value = evaluator.enclose(hunt.equation, &Case { area: point.map(Interval::point), ..hunt.steps });
+                hunt.signs |= sign(value);
+                if hunt.signs == verdict::POSITIVE | verdict::NEGATIVE {
+                    return Some(index);
+                }
+                hunt.found.push((value.mag(), point, value.mid(), [0.0; 2]));
+            }
+            hunt.found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            hunt.found.truncate(BEST);
+        }
+        None
+    };
+    chosen.iter().filter_map(|&index| found(index)).collect()
+}
+
 /// The search in one pixel.
 struct Hunt {
     index: usize,

@@ -43,6 +43,8 @@ pub struct SystemSpec {
     /// For each equation and coordinate, whether the derivative is defined everywhere, kinks and jumps included. The
     /// equation's increments are enclosed by derivative times step only where the derivative is defined.
     pub total: Vec<[bool; 2]>,
+    /// The equations' left sides alone, outputs of a graph.
+    pub formulas: Graph,
 }
 
 /// All that is to be compiled to settle single pixels of a shape.
@@ -158,7 +160,11 @@ fn order(orders: &Orders, source: &Graph, system: System, steps: &[String]) -> S
     let condition = conditions.into_iter().reduce(|a, b| graph.push(Op::Min, &[a, b]));
     outputs.extend(condition.map(|condition| Output::Verdict(less_half(&mut graph, condition))));
     let spec = orders.boxes(graph, steps, outputs);
-    SystemSpec { spec, equations: equations.len(), condition: condition.is_some(), total }
+    let mut formulas = Graph::new();
+    for (index, value) in formulas.import(source, &system.equations, &HashMap::new()).into_iter().enumerate() {
+        formulas.add_output(index.to_string(), value);
+    }
+    SystemSpec { formulas, spec, equations: equations.len(), condition: condition.is_some(), total }
 }
 
 /// Whether no operation of the value can be undefined.
