@@ -7,6 +7,9 @@
 use std::collections::HashMap;
 
 use num_rational::BigRational;
+use num_traits::One;
+use num_traits::Signed;
+use num_traits::Zero;
 
 use crate::graph::Graph;
 use crate::graph::Op;
@@ -27,6 +30,7 @@ impl Jumps {
     /// `root` with its step functions replaced by inputs; as it is if there are too many of them.
     pub fn take_out(&mut self, graph: &mut Graph, root: Value) -> Value {
         let before = self.steps.len();
+        let floors = floors(graph, root);
         let needed = graph.reachable(&[root]);
         let mut image: Vec<Value> = (0..=root.0).map(Value).collect();
         for index in 0..=root.index() {
@@ -37,12 +41,13 @@ impl Jumps {
             }
             let operands: Vec<Value> = node.operands().iter().map(|v| image[v.index()]).collect();
             image[index] = match node.op {
-                Op::Floor | Op::Ceil | Op::Round | Op::Sign => self.input(graph, value),
+                Op::Floor => self.floor(graph, value, &floors),
+                Op::Ceil | Op::Round | Op::Sign => self.input(graph, value),
                 Op::Mod => {
                     // x - y floor(x / y), the definition.
                     let ratio = graph.div(node.operands()[0], node.operands()[1]);
                     let whole = graph.unary(Op::Floor, ratio);
-                    let count = self.input(graph, whole);
+                    let count = self.floor(graph, whole, &floors);
                     let multiple = graph.mul(operands[1], count);
                     graph.sub(operands[0], multiple)
                 }
@@ -63,6 +68,23 @@ impl Jumps {
         image[root.index()]
     }
 
+    /// The input for a floor, or what says it by a finer one: floor(g) = floor(floor(n g) / n). So floors that jump together
+    /// are not taken for independent.
+    fn floor(&mut self, graph: &mut Graph, value: Value, floors: &[Floor]) -> Value {
+        let Some(own) = floors.iter().find(|floor| floor.value == value) else { return self.input(graph, value) };
+        let ratios =
+            floors.iter().filter(|floor| floor.base == own.base).map(|floor| (&floor.factor / &own.factor, floor));
+        let finer = ratios.filter(|(ratio, _)| ratio.is_integer() && ratio.is_positive());
+        let Some((ratio, finest)) = finer.max_by(|a, b| a.0.cmp(&b.0)) else { return self.input(graph, value) };
+        let count = self.input(graph, finest.value);
+        if ratio <= BigRational::from_integer(1.into()) {
+            return count;
+        }
+        let ratio = graph.constant(ratio);
+        let share = graph.div(count, ratio);
+        graph.unary(Op::Floor, share)
+    }
+
     fn input(&mut self, graph: &mut Graph, step: Value) -> Value {
         if let Some(&input) = self.inputs.get(&step) {
             return input;
@@ -75,7 +97,74 @@ impl Jumps {
     }
 }
 
+/// floor(factor base)
+struct Floor {
+    value: Value,
+    factor: BigRational,
+    base: Value,
+}
+
+/// The floors that `root` needs, those in remainders included.
+fn floors(graph: &mut Graph, root: Value) -> Vec<Floor> {
+    let needed = graph.reachable(&[root]);
+    let mut found = Vec::new();
+    for index in (0..=root.index()).filter(|&index| needed[index]) {
+        let value = Value(index as u32);
+        let node = *graph.node(value);
+        let value = match node.op {
+            Op::Floor => value,
+            Op::Mod => {
+                let ratio = graph.div(node.operands()[0], node.operands()[1]);
+                graph.unary(Op::Floor, ratio)
+            }
+            _ => continue,
+        };
+        let argument = graph.node(value).operands()[0];
+        let node = *graph.node(argument);
+        let number = |side: usize| graph.as_constant(node.operands()[side]).filter(|number| !number.is_zero()).cloned();
+        let (factor, base) = match node.op {
+            Op::Mul => match (number(0), number(1)) {
+                (Some(factor), _) => (factor, node.operands()[1]),
+                (None, Some(factor)) => (factor, node.operands()[0]),
+                (None, None) => (BigRational::one(), argument),
+            },
+            Op::Div => match number(1) {
+                Some(divisor) => (divisor.recip(), node.operands()[0]),
+                None => (BigRational::one(), argument),
+            },
+            _ => (BigRational::one(), argument),
+        };
+        found.push(Floor { value, factor, base });
+    }
+    found
+}
+
 /// The name of the input for a step function; no parameter has a name with a blank in it.
 pub fn step_name(step: usize) -> String {
     format!("step {step}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn floors_that_jump_together_have_one_input() {
+        let mut graph = Graph::new();
+        let x = graph.var("x");
+        let (two, three) = (graph.int(2), graph.int(3));
+        let twice = graph.mul(two, x);
+        let back = graph.neg(x);
+        let parts = [x, twice, back].map(|argument| graph.unary(Op::Floor, argument));
+        let rest = graph.push(Op::Mod, &[x, three]);
+        let sum = [parts[1], parts[2], rest].into_iter().fold(parts[0], |sum, part| graph.add(sum, part));
+        let mut jumps = Jumps::default();
+        let taken = jumps.take_out(&mut graph, sum);
+        // floor(2x), from which floor(x) and floor(x / 3) follow, and floor(-x).
+        let steps: Vec<Value> = jumps.steps.iter().map(|&(step, _)| step).collect();
+        assert_eq!(steps, [parts[1], parts[2]]);
+        let needed = graph.reachable(&[taken]);
+        let left = graph.iter().filter(|(v, node)| needed[v.index()] && node.op == Op::Mod).count();
+        assert_eq!(left, 0);
+    }
 }
