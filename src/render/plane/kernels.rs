@@ -4,10 +4,12 @@ use crate::derive::Precision;
 use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::graph::Graph;
+use crate::graph::Op;
+use crate::graph::apply;
+use crate::interval::Decorated;
 use crate::interval::Interval;
 use crate::kernel::Backend;
 use crate::kernel::verdict;
-use crate::passes::bounds;
 use crate::program::scene::COORDINATES;
 use crate::program::scene::Parameter;
 use crate::program::scene::Shape;
@@ -269,16 +271,28 @@ impl Evaluator<'_> {
 
     /// Encloses an equation's left side at a point by the interval library, which is slow and knows sines of numbers for which
     /// the kernels' reduction is not exact.
-    pub fn enclose(&mut self, equation: usize, case: &Case) -> Interval {
+    /// The derivatives are asked for in vain of points at which they are not defined.
+    pub fn enclose(&mut self, equation: usize, case: &Case, derivatives: bool) -> (Interval, [f64; 2]) {
         self.exact += 1;
-        let formulas = &self.kernel.formulas;
-        let input = |input: &Input| match *input {
-            Input::Coordinate(axis) => case.area[axis],
-            Input::Step(step) => Interval::point(case.steps[step]),
-            Input::Fixed(value) => value,
-        };
-        let inputs: Vec<Interval> = self.inputs.iter().map(input).collect();
-        bounds(formulas, &inputs, &[])[formulas.outputs()[equation].1.index()].interval()
+        let SystemKernel { formulas, equations, .. } = self.kernel;
+        let place = |output: usize| formulas.outputs()[output].1.index();
+        let slopes = [0, 1].map(|axis| place(equations + 2 * equation + axis));
+        // Derivatives come after all values.
+        let last = if derivatives { slopes[0].max(slopes[1]).max(place(equation)) } else { place(equation) };
+        let mut values: Vec<Decorated> = Vec::with_capacity(last + 1);
+        for (_, node) in formulas.iter().take(last + 1) {
+            let operands: Vec<Decorated> = node.operands().iter().map(|value| values[value.index()]).collect();
+            values.push(match node.op {
+                Op::Var(id) => Decorated::new(match self.inputs[id as usize] {
+                    Input::Coordinate(axis) => case.area[axis],
+                    Input::Step(step) => Interval::point(case.steps[step]),
+                    Input::Fixed(value) => value,
+                }),
+                _ => apply(formulas, node, &operands),
+            });
+        }
+        let slope = slopes.map(|index| values.get(index).map_or(0.0, |slope| slope.interval().mid()));
+        (values[place(equation)].interval(), slope)
     }
 
     fn sample(&self, lane: usize) -> Sample {

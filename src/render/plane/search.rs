@@ -60,12 +60,14 @@ pub fn search_exactly(evaluator: &mut Evaluator, pixels: &[Pixel], chosen: &[usi
         let mut hunt = Hunt::new(&pixels[index], index)?;
         for round in 0..ROUNDS {
             for point in hunt.points(round) {
-                let value = evaluator.enclose(hunt.equation, &Case { area: point.map(Interval::point), ..hunt.steps });
+                let case = Case { area: point.map(Interval::point), ..hunt.steps };
+                // Most pixels need only a few points of the first round.
+                let (value, slope) = evaluator.enclose(hunt.equation, &case, round > 0);
                 hunt.signs |= sign(value);
                 if hunt.signs == verdict::POSITIVE | verdict::NEGATIVE {
                     return Some(index);
                 }
-                hunt.found.push((value.mag(), point, value.mid(), [0.0; 2]));
+                hunt.found.push((value.mag(), point, value.mid(), slope));
             }
             hunt.found.sort_by(|a, b| a.0.total_cmp(&b.0));
             hunt.found.truncate(BEST);

@@ -43,7 +43,7 @@ pub struct SystemSpec {
     /// For each equation and coordinate, whether the derivative is defined everywhere, kinks and jumps included. The
     /// equation's increments are enclosed by derivative times step only where the derivative is defined.
     pub total: Vec<[bool; 2]>,
-    /// The equations' left sides alone, outputs of a graph.
+    /// The equations' left sides, outputs of a graph, and after them their derivatives by x and y.
     pub formulas: Graph,
 }
 
@@ -161,7 +161,12 @@ fn order(orders: &Orders, source: &Graph, system: System, steps: &[String]) -> S
     outputs.extend(condition.map(|condition| Output::Verdict(less_half(&mut graph, condition))));
     let spec = orders.boxes(graph, steps, outputs);
     let mut formulas = Graph::new();
-    for (index, value) in formulas.import(source, &system.equations, &HashMap::new()).into_iter().enumerate() {
+    let coordinates = [0, 1].map(|axis| formulas.var(COORDINATES[axis]));
+    let mut values = formulas.import(source, &system.equations, &HashMap::new());
+    for equation in values.clone() {
+        values.extend(derive::gradient(&mut formulas, equation, &coordinates));
+    }
+    for (index, value) in values.into_iter().enumerate() {
         formulas.add_output(index.to_string(), value);
     }
     SystemSpec { formulas, spec, equations: equations.len(), condition: condition.is_some(), total }
