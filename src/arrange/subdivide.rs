@@ -146,7 +146,9 @@ impl Subdivision<'_> {
                 let Decision { active, silent, crossing, settled } = decision;
                 let candidates = active.iter().map(|active| active.component).collect();
                 let work = Work { candidates, silent: [work.silent, silent].concat(), ..work };
-                let quarters = if settled || control.is_cancelled() { None } else { self.split(&work) };
+                // A replay ends at its leaves alone, even where its own enclosures would have settled a larger box.
+                let ends = settled && matches!(self.stop, Stop::Epsilon(_));
+                let quarters = if ends || control.is_cancelled() { None } else { self.split(&work) };
                 match quarters {
                     Some(quarters) => next.extend(quarters),
                     None => {

@@ -83,6 +83,8 @@ impl Tiling {
         control: &Control<'_>,
     ) -> Self {
         loop {
+            // An order of their own: a replay meets them in another one.
+            leaves.sort_unstable_by_key(|leaf| key(&leaf.area));
             let sides = sides(&leaves);
             let crossings = isolator.crossings(&sides, &leaves);
             let rings = rings(&leaves, &sides);
