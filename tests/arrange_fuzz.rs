@@ -64,9 +64,10 @@ fn signs(scene: &Scene, arrangement: &Arrangement, rng: &mut Rng) -> Result<(), 
             return Err(format!("sample {at:?} outside of the domain"));
         }
         for (curve, sign) in scene.curves.iter().zip(&face.signs) {
-            let contradicts = curve.field.sign(at).is_some_and(|positive| {
-                *sign == if positive { Sign::Negative } else { Sign::Positive }
-            });
+            let contradicts = curve
+                .field
+                .sign(at)
+                .is_some_and(|positive| *sign == if positive { Sign::Negative } else { Sign::Positive });
             if contradicts {
                 return Err(format!("at {at:?} {sign:?} is claimed, the value is {}", curve.field.value(at)));
             }

@@ -40,9 +40,11 @@ fn main() -> Result<(), String> {
     println!("vertices inside by degree: {:?}, proved: {}", counts.degrees, counts.proved);
     assert_eq!(counts.degrees.into_iter().collect::<Vec<_>>(), [(4, 15), (6, 10)]);
 
-    let inside = arrangement.vertices.iter().map(|v| v.vertex.area).filter(|[a, b]| {
-        x[0] < a.lo() && a.hi() < x[1] && y[0] < b.lo() && b.hi() < y[1]
-    });
+    let inside = arrangement
+        .vertices
+        .iter()
+        .map(|v| v.vertex.area)
+        .filter(|[a, b]| x[0] < a.lo() && a.hi() < x[1] && y[0] < b.lo() && b.hi() < y[1]);
     let widths: Vec<_> = inside.map(|[a, b]| (width(a, b), a, b)).collect();
     let least = widths.iter().map(|(w, ..)| w.hi()).fold(f64::INFINITY, f64::min);
     let best: Vec<_> = widths.iter().filter(|(w, ..)| w.lo() <= least).collect();

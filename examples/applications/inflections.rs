@@ -24,10 +24,8 @@ fn second(x: f64, s: f64) -> f64 {
 }
 
 fn main() -> Result<(), String> {
-    let terms: Vec<_> = BELLS
-        .iter()
-        .map(|(w, m)| format!("{w} * ((x - ({m}))^2 - y^2) * exp(-(x - ({m}))^2 / (2 y^2))"))
-        .collect();
+    let terms: Vec<_> =
+        BELLS.iter().map(|(w, m)| format!("{w} * ((x - ({m}))^2 - y^2) * exp(-(x - ({m}))^2 / (2 y^2))")).collect();
     let mut text = format!("curve bends: {} = 0\n", terms.join(" + "));
     for (i, s) in WIDTHS.iter().enumerate() {
         writeln!(text, "curve width{i}: y = {s}").map_err(|said| said.to_string())?;

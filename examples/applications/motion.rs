@@ -18,7 +18,8 @@ const GOAL: [f64; 2] = [8.875, 1.5];
 
 /// The scene of the centre of a disc of radius r.
 fn scene(r: f64) -> String {
-    let walls = WALLS.iter().map(|[x, a, b]| format!("curve wall: (x - {x})^2 + (y - max({a}, min(y, {b})))^2 = {r}^2\n"));
+    let walls =
+        WALLS.iter().map(|[x, a, b]| format!("curve wall: (x - {x})^2 + (y - max({a}, min(y, {b})))^2 = {r}^2\n"));
     let [x, y, own] = COLUMN;
     let mut text: String = walls.enumerate().map(|(i, wall)| wall.replacen("wall", &format!("wall{i}"), 1)).collect();
     text += &format!("curve column: (x - {x})^2 + (y - {y})^2 = ({own} + {r})^2\n");
@@ -69,7 +70,12 @@ fn main() -> Result<(), String> {
         let (start, goal) = (face("start"), face("goal"));
         assert!(start.is_some() && goal.is_some(), "start and goal are points");
         let reached = start == goal;
-        println!("radius {r}: {}, {} faces, proved: {}", if reached { "yes" } else { "no" }, counts.faces, counts.proved);
+        println!(
+            "radius {r}: {}, {} faces, proved: {}",
+            if reached { "yes" } else { "no" },
+            counts.faces,
+            counts.proved
+        );
         assert_eq!(reached, by_flooding(r));
         assert_eq!(reached, r < widest);
     }
