@@ -3,14 +3,16 @@
 //!
 //! Stages, each a pure function of the one before: `subdivide` quarters the box until each cell is settled or too
 //! small, `sides` isolates where curves cross the sides of cells, `local` joins these nodes within each cell, together a
-//! [`Complex`]; [`build`](mod@build) turns that into halfedges and faces.
+//! [`Complex`]; [`build`](mod@build) turns that into halfedges and faces. [`published`] is the algorithm as the source has it.
 
 mod assemble;
 pub mod build;
+pub mod certificate;
 pub mod check;
 mod cluster;
 pub mod complex;
 pub mod exact;
+pub mod export;
 pub mod field;
 mod functions;
 pub mod geometry;
@@ -20,7 +22,9 @@ pub mod locate;
 pub mod merge;
 mod newton;
 pub mod options;
+pub mod published;
 pub mod query;
+mod settle;
 mod sides;
 mod solve;
 pub mod structure;
@@ -30,5 +34,7 @@ mod tiling;
 pub use complex::Complex;
 pub use field::Fields;
 pub use options::Options;
+pub use solve::arrange;
+pub use solve::replay;
 pub use solve::solve;
 pub use structure::Arrangement;

@@ -1,5 +1,6 @@
 //! The arrangement: vertices, halfedges, faces. Topology in indices, geometry in boxes and chains of nodes beside it.
 
+use serde::Deserialize;
 use serde::Serialize;
 
 use crate::arrange::complex::Complex;
@@ -89,7 +90,7 @@ pub struct Halfedge {
 }
 
 /// What an edge is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EdgeKind {
     /// An arc of curves.
@@ -119,7 +120,7 @@ pub struct Edge {
 }
 
 /// The sign of a curve's field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sign {
     Negative,

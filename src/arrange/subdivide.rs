@@ -146,7 +146,9 @@ impl Subdivision<'_> {
                 let Decision { active, silent, crossing, settled } = decision;
                 let candidates = active.iter().map(|active| active.component).collect();
                 let work = Work { candidates, silent: [work.silent, silent].concat(), ..work };
-                let quarters = if settled || control.is_cancelled() { None } else { self.split(&work) };
+                // A replay ends at its leaves alone, even where its own enclosures would have settled a larger box.
+                let ends = settled && matches!(self.stop, Stop::Epsilon(_));
+                let quarters = if ends || control.is_cancelled() { None } else { self.split(&work) };
                 match quarters {
                     Some(quarters) => next.extend(quarters),
                     None => {
@@ -295,7 +297,8 @@ impl Subdivision<'_> {
     }
 
     fn settle(&mut self, works: &[Work], found: Vec<Vec<Met>>) -> Vec<Decision> {
-        let mut decisions: Vec<Decision> = works.iter().zip(&found).map(|(work, met)| pairs(work.area, met)).collect();
+        let mut decisions: Vec<Decision> =
+            works.iter().zip(&found).map(|(work, met)| pairs(self.fields, work.area, met)).collect();
         // Where everything but conditions is settled, their atoms are asked.
         let mut queries = Vec::new();
         let fields = self.fields;
@@ -414,7 +417,7 @@ fn regular(sample: &Sample) -> Option<Axis> {
 }
 
 /// Regularity of each component and relations of all pairs.
-fn pairs(area: [Interval; 2], met: &[Met]) -> Decision {
+fn pairs(fields: &Fields, area: [Interval; 2], met: &[Met]) -> Decision {
     let active: Vec<Active> = met
         .iter()
         .map(|met| Active {
@@ -428,6 +431,9 @@ fn pairs(area: [Interval; 2], met: &[Met]) -> Decision {
     if settled {
         for j in 1..met.len() {
             for i in 0..j {
+                if fields.are_disjoint(met[i].component, met[j].component) {
+                    continue;
+                }
                 match relation(area, &met[i], &met[j]) {
                     Some(Relation::Apart) => {}
                     Some(Relation::Transversal) => crossing.push((i as u8, j as u8)),

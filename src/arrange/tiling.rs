@@ -83,6 +83,8 @@ impl Tiling {
         control: &Control<'_>,
     ) -> Self {
         loop {
+            // An order of their own: a replay meets them in another one.
+            leaves.sort_unstable_by_key(|leaf| key(&leaf.area));
             let sides = sides(&leaves);
             let crossings = isolator.crossings(&sides, &leaves);
             let rings = rings(&leaves, &sides);
@@ -108,6 +110,13 @@ impl Tiling {
             if failed.is_empty() {
                 return Self { leaves, sides, crossings, joints, rings };
             }
+            // Along a curve that is hard to tell from a side the number of leaves would double with each pass.
+            let hopeless = failed.len() > subdivision.region;
+            for &index in &failed {
+                let flat = |&(side, _): &(u32, bool)| isolator.is_flat(&sides[side as usize]);
+                leaves[index].open |= hopeless || rings[index].iter().any(flat);
+            }
+            failed.retain(|&index| !leaves[index].open);
             leaves = quarter(subdivision, leaves, &failed, control);
         }
     }

@@ -31,17 +31,19 @@ pub struct Arguments {
 pub enum Command {
     /// Draw a scene.
     Render(Box<RenderArguments>),
-    /// Check a certificate of a picture with the reference interpreter alone.
+    /// Check a certificate of a picture or an arrangement with the reference interpreter alone.
     Verify {
         #[arg(value_name = "FILE")]
         file: PathBuf,
-        /// What `imp render FILE --certificate OUT` wrote.
+        /// What `imp render` or `imp arrange` wrote with `--certificate OUT`.
         #[arg(value_name = "OUT")]
         certificate: PathBuf,
-        /// Values of parameters, as they were set for the picture. Repeatable.
+        /// Values of parameters, as they were set for it. Repeatable.
         #[arg(long = "set", value_name = "NAME=VALUE", value_parser = values::setting)]
         settings: Vec<Override>,
     },
+    /// Compute the arrangement of a scene's curves: vertices, edges, faces, and how much of it is proved.
+    Arrange(Box<ArrangeArguments>),
     /// Say which kernels, rays and effects a picture will run, and why.
     Explain {
         #[arg(value_name = "FILE")]
@@ -175,6 +177,72 @@ pub struct LayerArgument {
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum StatsArgument {
     Json,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct ArrangeArguments {
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Write a picture, the structure or its graph: the ending says which. Repeatable.
+    #[arg(short, long = "output", value_name = "OUT.svg|png|json|geojson|dot", value_parser = values::drawing)]
+    pub outputs: Vec<DrawingArgument>,
+    /// Boxes with both sides at most E are not split; what is open there stays a cluster [default: 2^-30 of the domain].
+    #[arg(long, value_name = "E", value_parser = values::positive)]
+    pub epsilon: Option<f64>,
+    /// What decides.
+    #[arg(long, value_enum, default_value_t = MethodArgument::Certified)]
+    pub method: MethodArgument,
+    /// Print one JSON object instead of a table.
+    #[arg(long)]
+    pub json: bool,
+    /// Value of a parameter or of the time `t`. Repeatable.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Override>,
+    /// Worker threads [default: one per processor]. The arrangement does not depend on them.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Pixels of a picture across and down; one number for a square.
+    #[arg(long, value_name = "WxH", default_value = "960x800", value_parser = values::size)]
+    pub size: (u32, u32),
+    /// How far an edge's polyline may be from its curve [default: half a pixel of 1024 along the domain].
+    #[arg(long, value_name = "T", value_parser = values::positive)]
+    pub tolerance: Option<f64>,
+    /// Draw the boxes of the subdivision too.
+    #[arg(long)]
+    pub boxes: bool,
+    /// Write the graph of faces to DOT files instead of that of vertices.
+    #[arg(long)]
+    pub dual: bool,
+    /// Settle nothing with exact arithmetic.
+    #[arg(long)]
+    pub no_exact: bool,
+    /// Write what `imp verify` needs to check the arrangement.
+    #[arg(long, value_name = "OUT")]
+    pub certificate: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodArgument {
+    /// Interval proofs and exact arithmetic: what is not proved is said.
+    Certified,
+    /// CAPS as its source has it, for comparison: a labelled quadtree and the graph of its regions.
+    Published,
+}
+
+/// A file for an arrangement and what goes into it.
+#[derive(Debug, Clone)]
+pub struct DrawingArgument {
+    pub path: PathBuf,
+    pub format: DrawingFormat,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DrawingFormat {
+    Svg,
+    Png,
+    Json,
+    GeoJson,
+    Dot,
 }
 
 #[derive(Debug, clap::Args)]

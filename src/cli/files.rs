@@ -5,6 +5,8 @@ use std::io::Write;
 use std::path::Path;
 use std::path::PathBuf;
 use std::process;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
 
 use crate::cli::failure::Failure;
 use crate::session;
@@ -12,13 +14,38 @@ use crate::session;
 /// What shells report of a command ended by Ctrl-C.
 const INTERRUPTED: i32 = 130;
 
-/// Makes Ctrl-C end the process between writes, never within one.
+/// Whether work is under way that stops when it is asked to.
+static INTERRUPTIBLE: AtomicBool = AtomicBool::new(false);
+
+/// Asks that work to stop.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Makes Ctrl-C end the process between writes, never within one; or ask interruptible work to stop, the first time.
 pub fn exit_on_interrupt() {
     // Without a handler the process ends all the same, only less tidily.
     let _ = ctrlc::set_handler(|| {
+        if INTERRUPTIBLE.load(Ordering::SeqCst) && !STOP.swap(true, Ordering::SeqCst) {
+            return;
+        }
         let _writing = session::finish_writing();
         process::exit(INTERRUPTED);
     });
+}
+
+/// Does work that stops with what it has when a flag is set, which the first Ctrl-C does; the second one ends the process.
+/// The result, and whether it was asked to stop.
+pub fn interruptible<T>(work: impl FnOnce(&AtomicBool) -> T) -> (T, bool) {
+    INTERRUPTIBLE.store(true, Ordering::SeqCst);
+    let result = work(&STOP);
+    INTERRUPTIBLE.store(false, Ordering::SeqCst);
+    (result, STOP.load(Ordering::SeqCst))
+}
+
+/// Ends the process as interrupted, with a word on stderr.
+pub fn leave_interrupted(word: &str) -> ! {
+    // Nobody is left to be told when stderr is closed.
+    let _ = writeln!(io::stderr(), "{word}");
+    process::exit(INTERRUPTED)
 }
 
 /// Writes a file as a whole, as [`session::write`].

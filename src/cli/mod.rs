@@ -2,6 +2,7 @@
 //! 1 the user's mistake, 2 ours, 130 interrupted.
 
 mod arguments;
+mod arrange;
 mod cost;
 mod eval;
 mod failure;
@@ -12,16 +13,20 @@ mod values;
 
 use std::io;
 use std::panic;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering;
 
 use clap::Parser;
 
+use crate::arrange::certificate::Certificate;
 use crate::cli::arguments::Arguments;
 use crate::cli::arguments::Command;
 use crate::cli::failure::Failure;
 use crate::repl;
+use crate::session;
+use crate::session::Override;
 
 /// Runs the command that the process was given.
 pub fn main() -> ExitCode {
@@ -48,14 +53,24 @@ pub fn main() -> ExitCode {
 fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Render(arguments) => render::render(arguments),
-        Command::Verify { file, certificate, settings } => render::verify(file, certificate, settings),
+        Command::Verify { file, certificate, settings } => verify(file, certificate, settings),
         Command::Explain { file, picture } => render::explain(file, picture),
         Command::Check { files } => text::check(files),
         Command::Fmt { files, check } => text::format(files, *check),
         Command::Emit(arguments) => text::emit(arguments),
         Command::Eval(arguments) => eval::eval(arguments),
         Command::Repl => Ok(repl::run()?),
+        Command::Arrange(arguments) => arrange::arrange(arguments),
         Command::Cost(arguments) => cost::cost(arguments),
+    }
+}
+
+/// `imp verify`: the file's first bytes say what it certifies.
+fn verify(file: &Path, certificate: &Path, settings: &[Override]) -> Result<(), Failure> {
+    let bytes = session::bytes(certificate)?;
+    match Certificate::is_one(&bytes) {
+        true => arrange::verify(file, &bytes, settings),
+        false => render::verify(file, &bytes, settings),
     }
 }
 

@@ -85,10 +85,10 @@ pub fn explain(file: &Path, picture: &PictureArguments) -> Result<(), Failure> {
     }
 }
 
-/// `imp verify`: replays a certificate with the reference interpreter alone.
-pub fn verify(file: &Path, certificate: &Path, settings: &[Override]) -> Result<(), Failure> {
+/// `imp verify` for a certificate of a picture: replays it with the reference interpreter alone.
+pub fn verify(file: &Path, certificate: &[u8], settings: &[Override]) -> Result<(), Failure> {
     let (artefact, scene) = text::scene(file, settings)?;
-    let certificate = Certificate::from_bytes(&session::bytes(certificate)?)?;
+    let certificate = Certificate::from_bytes(certificate)?;
     let report = watched(None, |control| render::verify(&scene, &certificate, &Interpreter, control));
     let report = report.map_err(|diagnostic| Failure::new(artefact.sources, vec![diagnostic]))?;
     let render::Report { counts, cells, evaluations } = report;

@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
+use crate::cli::arguments::DrawingArgument;
+use crate::cli::arguments::DrawingFormat;
 use crate::cli::arguments::LayerArgument;
 use crate::cli::arguments::ReportArgument;
 use crate::cli::arguments::ReportFormat;
@@ -81,6 +83,21 @@ pub fn report(text: &str) -> Result<ReportArgument, String> {
     Ok(ReportArgument { path, format })
 }
 
+/// A file whose ending says what of an arrangement goes into it.
+pub fn drawing(text: &str) -> Result<DrawingArgument, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let format = match ending.as_deref() {
+        Some("svg") => DrawingFormat::Svg,
+        Some("png") => DrawingFormat::Png,
+        Some("json") => DrawingFormat::Json,
+        Some("geojson") => DrawingFormat::GeoJson,
+        Some("dot") => DrawingFormat::Dot,
+        _ => return Err("name a file that ends in .svg, .png, .json, .geojson or .dot".to_owned()),
+    };
+    Ok(DrawingArgument { path, format })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,6 +117,10 @@ mod tests {
         assert_eq!(report("b.csv").map(|report| report.format), Ok(ReportFormat::Csv));
         for wrong in ["", "html", "a.png", "a.html.gz"] {
             assert!(report(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(drawing("b.GeoJSON").map(|drawing| drawing.format), Ok(DrawingFormat::GeoJson));
+        for wrong in ["", "svg", "a.html", "a.svg.gz"] {
+            assert!(drawing(wrong).is_err(), "{wrong}");
         }
     }
 

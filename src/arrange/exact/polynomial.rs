@@ -46,6 +46,19 @@ impl Polynomial {
         sum
     }
 
+    /// The polynomial without its constant term, primitive: equal for polynomials that differ by a constant, up to factors.
+    pub fn without_constant(&self) -> Self {
+        let mut rows = self.rows.clone();
+        if let Some(first) = rows.first_mut() {
+            let mut coefficients = first.coefficients().to_vec();
+            if let Some(constant) = coefficients.first_mut() {
+                *constant = BigInt::zero();
+            }
+            *first = Univariate::new(coefficients);
+        }
+        Self::new(rows).primitive()
+    }
+
     pub fn constant(value: BigInt) -> Self {
         Self::new(vec![Univariate::constant(value)])
     }
