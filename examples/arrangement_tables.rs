@@ -17,6 +17,9 @@ use std::thread;
 use std::time::Duration;
 use std::time::Instant;
 
+use imp::arrange;
+use imp::arrange::check;
+use imp::arrange::check::Counts;
 use imp::arrange::field::Fields;
 use imp::arrange::published;
 use imp::arrange::published::Graph;
@@ -75,32 +78,34 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn classes() -> Result<(), Box<dyn Error>> {
     println!("## The classes of table 4.1\n");
-    let mut counts = Table::new(&[
-        "class",
-        "crossed",
-        "undecided",
-        "several",
-        "discontinuous",
-        "vertices",
-        "edges",
-        "indeterminate",
-        "no curve",
-        "adjacencies",
-        "exact",
-    ]);
-    let mut table = Table::new(&["class", "source: tree", "s", "published: tree", "evaluations", "s"]);
+    let mut counts = Table::new(
+        "class | crossed | undecided | several | discontinuous | vertices \
+         | edges | indeterminate | no curve | adjacencies | exact",
+    );
+    let mut table = Table::new(
+        "class | source: tree | s | published: tree | evaluations | s \
+         | certified: boxes | evaluations | s | V | E | F | proved",
+    );
+    let mut vertices = Table::new("class | crossing | tangency | singular | end | boundary | loop | cluster");
     for (class, file, size, seconds) in CLASSES {
         let scene = scene_of(session::Source::File(&Path::new("examples/arrangements").join(format!("{file}.imp"))))?;
         let run = published(&scene, EPSILON)?;
         let graph = &run.graph;
-        table.row(&[
+        let certified = certified(&scene, EPSILON)?;
+        let mut cells = vec![
             class.into(),
             size.to_string(),
             seconds.to_string(),
             run.size(),
             graph.evaluations.to_string(),
             run.time(),
-        ]);
+        ];
+        cells.extend(certified.size_and_time());
+        cells.extend(certified.result());
+        table.row(&cells);
+        let mut cells = vec![class.into()];
+        cells.extend(certified.kinds().map(|kind| kind.to_string()));
+        vertices.row(&cells);
         let kind = |kind| graph.count(kind).to_string();
         counts.row(&[
             class.into(),
@@ -117,6 +122,8 @@ fn classes() -> Result<(), Box<dyn Error>> {
         ]);
     }
     table.print();
+    println!("Vertices of the certified algorithm:\n");
+    vertices.print();
     println!("Leaves and regions of the published algorithm:\n");
     counts.print();
     Ok(())
@@ -125,22 +132,36 @@ fn classes() -> Result<(), Box<dyn Error>> {
 /// How both algorithms grow with the number of curves of a degree.
 fn growth(title: &str, make: &dyn Fn(usize) -> String, degree: usize) -> Result<(), Box<dyn Error>> {
     println!("## {title}\n");
-    let mut table =
-        Table::new(&["n", "published: tree", "tree / (K log2(L/eps))", "vertices", "edges", "terminal", "s"]);
+    let mut table = Table::new(
+        "n | published: tree | tree / (K log2(L/eps)) | vertices | edges | s \
+         | certified: boxes | evaluations | s | boxes / K | V | E | F | proved",
+    );
+    let mut patient = true;
     for n in [10, 20, 50, 100, 200, 500, 1000] {
         let scene = scene_of(session::Source::Text { name: title, text: &make(n) })?;
         let run = published(&scene, EPSILON)?;
         // The source sums over all ordered pairs.
-        let bound = (n * (n - 1) * degree * degree) as f64 * (SIDE / EPSILON).log2();
-        table.row(&[
+        let bezout = (n * (n - 1) * degree * degree) as f64;
+        let bound = bezout * (SIDE / EPSILON).log2();
+        let mut cells = vec![
             n.to_string(),
             run.size(),
-            format!("{:.3}", run.graph.nodes as f64 / bound),
+            if run.graph.complete { format!("{:.2}", run.graph.nodes as f64 / bound) } else { "-".into() },
             run.graph.count(RegionKind::Vertex).to_string(),
             run.graph.count(RegionKind::Edge).to_string(),
-            format!("{:.1e}", run.graph.terminal),
             run.time(),
-        ]);
+        ];
+        // What was stopped for its time is not tried with more.
+        if patient {
+            let certified = certified(&scene, EPSILON)?;
+            patient = !certified.stopped;
+            cells.extend(certified.size_and_time());
+            cells.push(format!("{:.2}", certified.boxes as f64 / bezout));
+            cells.extend(certified.result());
+        } else {
+            cells.extend(["-"; 8].map(String::from));
+        }
+        table.row(&cells);
     }
     table.print();
     Ok(())
@@ -149,8 +170,10 @@ fn growth(title: &str, make: &dyn Fn(usize) -> String, degree: usize) -> Result<
 /// How both depend on epsilon.
 fn by_epsilon() -> Result<(), Box<dyn Error>> {
     println!("## Twenty lines, twenty cubics, and epsilon\n");
-    let mut table =
-        Table::new(&["epsilon", "log2(L/eps)", "lines, published: tree", "s", "cubics, published: tree", "s"]);
+    let mut table = Table::new(
+        "epsilon | log2(L/eps) | lines, published: tree | s | certified: boxes | s | clusters \
+         | cubics, published: tree | s | certified: boxes | s | clusters",
+    );
     let lines = scene_of(session::Source::Text { name: "lines", text: &random_lines(20) })?;
     let cubics = scene_of(session::Source::Text { name: "cubics", text: &random_cubics(20) })?;
     for exponent in [1, 2, 3, 4, 6, 8, 10] {
@@ -158,7 +181,9 @@ fn by_epsilon() -> Result<(), Box<dyn Error>> {
         let mut cells = vec![format!("1e-{exponent}"), format!("{:.1}", (SIDE / epsilon).log2())];
         for scene in [&lines, &cubics] {
             let run = published(scene, epsilon)?;
-            cells.extend([run.size(), run.time()]);
+            let certified = certified(scene, epsilon)?;
+            cells.extend([run.size(), run.time(), certified.boxes.to_string(), certified.time()]);
+            cells.push(certified.counts.vertices.cluster.to_string());
         }
         table.row(&cells);
     }
@@ -171,8 +196,10 @@ fn close() -> Result<(), Box<dyn Error>> {
     /// Above the gaps of the last rows, so that it ends the descent there.
     const EPSILON: f64 = 1e-4;
     println!("## Two close lines, epsilon 1e-4\n");
-    let mut table =
-        Table::new(&["k", "parallel, published: tree", "vertices", "s", "angle, published: tree", "vertices", "s"]);
+    let mut table = Table::new(
+        "k | parallel, published: tree | vertices | s | certified: boxes | crossings | proved | s \
+         | angle, published: tree | vertices | s | certified: boxes | crossings | proved | s",
+    );
     for k in (2..=24).step_by(2) {
         let gap = 2f64.powi(-k);
         // 3, 4 and 5 make the distance that of the constants; an angle of 2^-k turns the slope by as much.
@@ -182,7 +209,10 @@ fn close() -> Result<(), Box<dyn Error>> {
         for text in [&parallel, &angle] {
             let scene = scene_of(session::Source::Text { name: "close", text })?;
             let run = published(&scene, EPSILON)?;
+            let certified = certified(&scene, EPSILON)?;
             cells.extend([run.size(), run.graph.count(RegionKind::Vertex).to_string(), run.time()]);
+            cells.extend([certified.boxes.to_string(), certified.counts.vertices.crossing.to_string()]);
+            cells.extend([yes(certified.counts.proved), certified.time()]);
         }
         table.row(&cells);
     }
@@ -265,6 +295,47 @@ fn published(scene: &Scene, epsilon: f64) -> Result<Published, Box<dyn Error>> {
     Ok(Published { graph, seconds: start.elapsed().as_secs_f64(), stopped })
 }
 
+/// A run of the certified algorithm.
+struct Certified {
+    counts: Counts,
+    boxes: u64,
+    evaluations: u64,
+    seconds: f64,
+    stopped: bool,
+}
+
+impl Certified {
+    fn size_and_time(&self) -> [String; 3] {
+        [self.boxes.to_string(), self.evaluations.to_string(), self.time()]
+    }
+
+    fn result(&self) -> [String; 4] {
+        let vertices: u64 = self.kinds().iter().sum();
+        [vertices.to_string(), self.counts.edges.to_string(), self.counts.faces.to_string(), yes(self.counts.proved)]
+    }
+
+    fn kinds(&self) -> [u64; 7] {
+        let kinds = &self.counts.vertices;
+        [kinds.crossing, kinds.tangency, kinds.singular, kinds.end, kinds.boundary, kinds.closed, kinds.cluster]
+    }
+
+    fn time(&self) -> String {
+        seconds(self.seconds, self.stopped)
+    }
+}
+
+fn certified(scene: &Scene, epsilon: f64) -> Result<Certified, Box<dyn Error>> {
+    let start = Instant::now();
+    let options = arrange::Options { epsilon: Some(epsilon), ..arrange::Options::default() };
+    let fields = Fields::new(scene, session::backend()).map_err(title)?;
+    let (complex, stopped) = patiently(|control| arrange::solve(&fields, &options, None, control));
+    let arrangement = arrange::build::build(complex)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let counts = check::check(&arrangement)?;
+    let effort = arrangement.complex.effort;
+    Ok(Certified { counts, boxes: effort.boxes, evaluations: effort.evaluations, seconds, stopped })
+}
+
 /// Runs work that is cancelled when it takes too long, and says whether it was.
 fn patiently<T>(work: impl FnOnce(&Control) -> T) -> (T, bool) {
     let cancel = AtomicBool::new(false);
@@ -302,9 +373,11 @@ struct Table {
 }
 
 impl Table {
-    fn new(heads: &[&str]) -> Self {
+    /// The heads of the columns, with bars between.
+    fn new(heads: &str) -> Self {
+        let heads: Vec<&str> = heads.split(" | ").collect();
         let rule = vec!["---"; heads.len()];
-        Self { rows: vec![line(heads), line(&rule)] }
+        Self { rows: vec![line(&heads), line(&rule)] }
     }
 
     fn row(&mut self, cells: &[String]) {

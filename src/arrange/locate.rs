@@ -295,7 +295,10 @@ impl<'a> Locator<'a> {
                 }
             }
         }
-        for block in cell.blocks.iter().filter(|block| block.vertex.is_none()) {
+        // A line across the box of the leaf is one across the cell only if that is all of the cell. An arc from one side of the
+        // line to the other meets it, then, where the component has its only zero there.
+        let arcs = cell.blocks.iter().filter(|block| block.vertex.is_none() && cell.boxes.len() == 1);
+        for block in arcs {
             let first =
                 block.nodes.iter().map(|&n| &complex.nodes[n as usize]).find(|node| node.component == component);
             if first.is_none() {

@@ -3,7 +3,7 @@
 //!
 //! Stages, each a pure function of the one before: `subdivide` quarters the box until each cell is settled or too
 //! small, `sides` isolates where curves cross the sides of cells, `local` joins these nodes within each cell, together a
-//! [`Complex`]; [`build`](mod@build) turns that into halfedges and faces.
+//! [`Complex`]; [`build`](mod@build) turns that into halfedges and faces. [`published`] is the algorithm as the source has it.
 
 mod assemble;
 pub mod build;

@@ -377,7 +377,7 @@ impl<'p> Lowerer<'p> {
     }
 
     /// `a - b`, where a literal 0 on either side is not worth a node.
-    fn difference(&mut self, a: Value, b: Value) -> Value {
+    pub fn difference(&mut self, a: Value, b: Value) -> Value {
         if self.graph.is_zero(b) {
             a
         } else if self.graph.is_zero(a) {

@@ -9,6 +9,7 @@ use crate::diagnostic::SourceMap;
 use crate::diagnostic::Span;
 use crate::diagnostic::did_you_mean;
 use crate::graph::Graph;
+use crate::graph::Op;
 use crate::graph::Value;
 use crate::interval::Interval;
 use crate::syntax::ast::Expr;
@@ -223,11 +224,11 @@ fn lower_shapes(lowerer: &mut Lowerer) -> Vec<Lowered> {
             let meaning = lowerer.lower(condition);
             lowerer.truth("`where` needs a condition", &meaning, condition.span).map(|truth| truth.value)
         });
-        let Some((kind, field)) = field else { continue };
+        let Some((kind, field, besides)) = field else { continue };
         let condition = match truth {
             Some(None) => continue,
-            Some(Some(value)) => Some(value),
-            None => None,
+            Some(Some(value)) => Some(besides.map_or(value, |besides| lowerer.graph.push(Op::Min, &[besides, value]))),
+            None => besides,
         };
         let roots: Vec<Value> = [field].into_iter().chain(condition).collect();
         let inputs = inputs_of(&lowerer.graph, &roots);
@@ -242,13 +243,22 @@ fn lower_shapes(lowerer: &mut Lowerer) -> Vec<Lowered> {
     shapes
 }
 
-/// The field of a shape; a message if its meaning has none. `bare` if it is a statement without keyword.
-fn shape_field(lowerer: &mut Lowerer, meaning: &Meaning, relation: &Expr, bare: bool) -> Option<(ShapeKind, Value)> {
+/// The field of a shape, and what must hold besides; a message if its meaning has none. `bare` if it is a statement without
+/// keyword.
+fn shape_field(
+    lowerer: &mut Lowerer,
+    meaning: &Meaning,
+    relation: &Expr,
+    bare: bool,
+) -> Option<(ShapeKind, Value, Option<Value>)> {
     let help = match meaning {
-        Meaning::Equation(equation) => return Some((ShapeKind::Equation, equation.difference)),
+        Meaning::Equation(equation) => return Some((ShapeKind::Equation, equation.difference, None)),
         Meaning::Truth(truth) => match truth.solid {
-            Ok(field) => return Some((ShapeKind::Region, field)),
+            Ok(field) => return Some((ShapeKind::Region, field, None)),
             Err(blame) => {
+                if let Some((field, besides)) = equation_among(lowerer, truth.value) {
+                    return Some((ShapeKind::Equation, field, besides));
+                }
                 let diagnostic = errors::equation_as_solid(blame);
                 lowerer.report(diagnostic.help("for both surfaces f = 0 and g = 0 in one, write `f * g = 0`"));
                 return None;
@@ -262,6 +272,25 @@ fn shape_field(lowerer: &mut Lowerer, meaning: &Meaning, relation: &Expr, bare: 
     };
     lowerer.report(errors::not_a_shape(meaning.kind(), relation.span, help));
     None
+}
+
+/// Of relations joined by `and`, the first equation's difference, and the truth of the others; `None` if no equation is
+/// among them.
+fn equation_among(lowerer: &mut Lowerer, truth: Value) -> Option<(Value, Option<Value>)> {
+    let mut conjuncts = Vec::new();
+    let mut open = vec![truth];
+    while let Some(value) = open.pop() {
+        let node = *lowerer.graph.node(value);
+        match node.op {
+            Op::Min => open.extend(node.operands().iter().rev()),
+            _ => conjuncts.push(value),
+        }
+    }
+    let first = conjuncts.iter().position(|&value| lowerer.graph.node(value).op == Op::Equal)?;
+    let node = *lowerer.graph.node(conjuncts.remove(first));
+    let field = lowerer.difference(node.operands()[0], node.operands()[1]);
+    let besides = if conjuncts.is_empty() { None } else { Some(lowerer.balanced(Op::Min, conjuncts)) };
+    Some((field, besides))
 }
 
 /// All parameters in source order, those of imported files after, and the time last.

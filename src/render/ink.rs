@@ -8,7 +8,7 @@ use crate::render::batch::Batch;
 use crate::render::batch::Program;
 use crate::render::march::GROUPS;
 use crate::render::plane::Place;
-use crate::render::plane::Raster;
+use crate::render::plane::raster::Raster;
 use crate::render::shade::PALETTE;
 
 const PAPER: [f64; 3] = [0.99, 0.99, 0.985];
@@ -16,6 +16,9 @@ const PAPER: [f64; 3] = [0.99, 0.99, 0.985];
 const MARGIN: [f64; 3] = [0.93, 0.93, 0.925];
 const GRID: [f64; 3] = [0.86, 0.87, 0.89];
 const AXIS: [f64; 3] = [0.45, 0.47, 0.52];
+
+/// Pixels of which nothing is proved.
+const UNKNOWN: [f64; 3] = [0.91, 0.10, 0.12];
 
 /// Half the width of a stroke in pixels, for a picture of 512 pixels; it grows with the picture.
 const HALF_STROKE: f64 = 1.1;
@@ -34,14 +37,25 @@ pub struct Canvas<'a> {
 impl Canvas<'_> {
     /// The pixels, row by row, and how often gradients were evaluated.
     pub fn draw(&self) -> (Vec<[u8; 3]>, u64) {
-        let (width, height) = (self.raster.x.len() - 1, self.raster.y.len() - 1);
-        let rows: Vec<(Vec<[u8; 3]>, u64)> = (0..height).into_par_iter().map(|y| self.row(y, width, height)).collect();
+        let height = self.raster.y.len() - 1;
+        let lines = [0, 1].map(|axis| self.lines(axis));
+        let lines = [&lines[0][..], &lines[1][..]];
+        let rows: Vec<(Vec<[u8; 3]>, u64)> = (0..height).into_par_iter().map(|y| self.row(y, lines)).collect();
         let evaluations = rows.iter().map(|(_, evaluations)| evaluations).sum();
         (rows.into_iter().flat_map(|(row, _)| row).collect(), evaluations)
     }
 
-    fn row(&self, y: usize, width: usize, height: usize) -> (Vec<[u8; 3]>, u64) {
-        let mut colors: Vec<[f64; 3]> = (0..width).map(|x| self.paper(x, y)).collect();
+    fn row(&self, y: usize, [columns, rows]: [&[Line]; 2]) -> (Vec<[u8; 3]>, u64) {
+        let (width, height) = (columns.len(), rows.len());
+        let mut colors = vec![PAPER; width];
+        for (x, color) in colors.iter_mut().enumerate() {
+            *color = match (columns[x], rows[y]) {
+                (Line::Outside, _) | (_, Line::Outside) => MARGIN,
+                (Line::Axis, _) | (_, Line::Axis) => AXIS,
+                (Line::Grid, _) | (_, Line::Grid) => GRID,
+                (Line::None, Line::None) => PAPER,
+            };
+        }
         let half = HALF_STROKE * (width.min(height) as f64 / 512.0).max(0.8);
         let mut evaluations = 0;
         for ((places, shape), (index, gradient)) in
@@ -57,8 +71,7 @@ impl Canvas<'_> {
             }
             let Some(program) = gradient else { continue };
             let reach = (half + 1.0).ceil() as usize;
-            let near: Vec<(usize, f64)> =
-                (0..width).filter_map(|x| Some((x, nearest(places, width, height, (x, y), reach)?))).collect();
+            let near = near(places, [width, height], y, reach);
             let mut batch = Batch::new(program, GROUPS);
             for chunk in near.chunks(batch.capacity()) {
                 for (lane, &(x, _)) in chunk.iter().enumerate() {
@@ -80,32 +93,45 @@ impl Canvas<'_> {
             }
             evaluations += batch.evaluations;
         }
+        for (x, color) in colors.iter_mut().enumerate() {
+            if self.places.iter().any(|places| places[y * width + x] == Place::Unknown) {
+                *color = UNKNOWN;
+            }
+        }
         (
             colors.into_iter().map(|color| color.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8)).collect(),
             evaluations,
         )
     }
 
-    /// The colour under everything: grid lines at round numbers, the axes darker.
-    fn paper(&self, x: usize, y: usize) -> [f64; 3] {
-        let [px, py] = self.raster.centre(x, y);
-        if !self.raster.domain[0].contains(px) || !self.raster.domain[1].contains(py) {
-            return MARGIN;
-        }
-        let extent = self.raster.domain[0].width().max(self.raster.domain[1].width());
+    /// What of the grid is drawn in each column, or row: lines at round numbers.
+    fn lines(&self, axis: usize) -> Vec<Line> {
+        let edges = if axis == 0 { &self.raster.x } else { &self.raster.y };
+        let domain = self.raster.domain;
+        let extent = domain[0].width().max(domain[1].width());
         let step = round_step(extent / 8.0);
-        let on = |edges: [f64; 2]| {
-            let (lo, hi) = (edges[0].min(edges[1]), edges[0].max(edges[1]));
+        let line = |pair: &[f64]| {
+            let (lo, hi) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
             let line = (hi / step).floor() * step;
-            (line > lo).then_some(line == 0.0)
+            match line > lo {
+                _ if !domain[axis].contains(0.5 * (lo + hi)) => Line::Outside,
+                false => Line::None,
+                true if line == 0.0 => Line::Axis,
+                true => Line::Grid,
+            }
         };
-        let lines = [on([self.raster.x[x], self.raster.x[x + 1]]), on([self.raster.y[y], self.raster.y[y + 1]])];
-        match lines {
-            [None, None] => PAPER,
-            [Some(true), _] | [_, Some(true)] => AXIS,
-            _ => GRID,
-        }
+        edges.windows(2).map(line).collect()
     }
+}
+
+/// What of the grid lies in a column or row of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Line {
+    None,
+    Grid,
+    Axis,
+    /// Beyond the domain.
+    Outside,
 }
 
 /// 1, 2 or 5 times a power of ten, near the given length.
@@ -119,16 +145,22 @@ fn mix(under: [f64; 3], over: [f64; 3], share: f64) -> [f64; 3] {
     std::array::from_fn(|c| under[c] + share * (over[c] - under[c]))
 }
 
-/// The distance in pixels to the nearest pixel within reach that is crossed or unknown.
-fn nearest(places: &[Place], width: usize, height: usize, (x, y): (usize, usize), reach: usize) -> Option<f64> {
-    let mut nearest: Option<f64> = None;
+/// The pixels of a row that have a crossed or unknown pixel within reach, with the distance in pixels to the nearest one.
+fn near(places: &[Place], [width, height]: [usize; 2], y: usize, reach: usize) -> Vec<(usize, f64)> {
+    let mut squares = vec![usize::MAX; width];
     for row in y.saturating_sub(reach)..=(y + reach).min(height - 1) {
-        for column in x.saturating_sub(reach)..=(x + reach).min(width - 1) {
-            if matches!(places[row * width + column], Place::Crossed | Place::Unknown) {
-                let apart = (row.abs_diff(y) as f64).hypot(column.abs_diff(x) as f64);
-                nearest = Some(nearest.map_or(apart, |d| d.min(apart)));
+        let up = row.abs_diff(y);
+        for (column, place) in places[row * width..(row + 1) * width].iter().enumerate() {
+            if !matches!(place, Place::Crossed | Place::Unknown) {
+                continue;
+            }
+            let first = column.saturating_sub(reach);
+            for (x, square) in squares[first..(column + reach + 1).min(width)].iter_mut().enumerate() {
+                let aside = (first + x).abs_diff(column);
+                *square = (*square).min(up * up + aside * aside);
             }
         }
     }
-    nearest
+    let reached = squares.into_iter().enumerate().filter(|&(_, square)| square != usize::MAX);
+    reached.map(|(x, square)| (x, (square as f64).sqrt())).collect()
 }

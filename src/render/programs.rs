@@ -163,7 +163,7 @@ impl Orders<'_> {
         let field = graph.import(&self.scene.graph, &[self.shape.field], &HashMap::new())[0];
         let mut outputs = vec![Output::Value(field)];
         outputs.extend(derive::gradient(&mut graph, field, &coordinates).into_iter().map(Output::Value));
-        self.spec(graph, self.coordinates().to_vec(), outputs, Vec::new(), Arithmetic::Point)
+        self.spec(graph, self.coordinates(), outputs, Vec::new(), Arithmetic::Point)
     }
 
     /// Box x, y(, z) in; verdicts of field and condition, and for zero sets with poles the refutation of the numerator out:
@@ -178,7 +178,15 @@ impl Orders<'_> {
         outputs.extend(roots.get(1).map(|&condition| Output::Verdict(less_half(&mut graph, condition))));
         outputs.extend(self.numerator(&mut graph, roots[0]));
         let domain = coordinates.into_iter().zip(self.scene.domain.iter().copied()).collect();
-        self.spec(graph, self.coordinates().to_vec(), outputs, domain, self.arithmetic)
+        self.spec(graph, self.coordinates(), outputs, domain, self.arithmetic)
+    }
+
+    /// Box x, y(, z) and further inputs in, outputs of a graph of one's own out, by plain intervals.
+    pub fn boxes(&self, mut graph: Graph, inputs: &[String], outputs: Vec<Output>) -> Spec {
+        let coordinates = self.coordinates();
+        let domain = coordinates.iter().map(|name| graph.var(name)).zip(self.scene.domain.iter().copied()).collect();
+        let lanes = coordinates.into_iter().chain(inputs.iter().cloned()).collect();
+        self.spec(graph, lanes, outputs, domain, Arithmetic::Interval)
     }
 
     /// For zero sets with poles: the refutation of the numerator.
@@ -190,8 +198,8 @@ impl Orders<'_> {
         }
     }
 
-    fn coordinates(&self) -> &'static [&'static str] {
-        &COORDINATES[..self.scene.dimension()]
+    fn coordinates(&self) -> Vec<String> {
+        COORDINATES[..self.scene.dimension()].iter().map(|&name| name.to_owned()).collect()
     }
 
     fn along_ray(
@@ -212,16 +220,16 @@ impl Orders<'_> {
             outputs.extend(self.numerator(&mut ray.graph, ray.roots[0]));
         }
         let domain = ray.coordinates.into_iter().zip(self.scene.domain.iter().copied()).collect();
-        let mut lanes = reach.varying().to_vec();
-        lanes.push(derive::PARAMETER);
-        lanes.extend(extra);
+        let lanes = reach.varying();
+        let lanes = lanes.iter().chain([&derive::PARAMETER]).chain(extra);
+        let lanes = lanes.map(|&name| name.to_owned()).collect();
         self.spec(ray.graph, lanes, outputs, domain, arithmetic)
     }
 
     fn spec(
         &self,
         graph: Graph,
-        lanes: Vec<&'static str>,
+        lanes: Vec<String>,
         outputs: Vec<Output>,
         domain: Vec<(Value, Interval)>,
         arithmetic: Arithmetic,
@@ -229,17 +237,17 @@ impl Orders<'_> {
         let promises: Vec<(String, Interval)> =
             graph.variables().iter().filter_map(|name| Some((name.clone(), self.promise(name)?))).collect();
         let (graph, outputs, domain) = simplify(graph, outputs, domain, &promises);
-        let uniforms = graph.variables().iter().filter(|name| !lanes.contains(&name.as_str())).cloned().collect();
+        let uniforms = graph.variables().iter().filter(|name| !lanes.contains(name)).cloned().collect();
         let mut symbols = Vec::new();
         if let (Arithmetic::Affine, Some(reach)) = (arithmetic, self.reach) {
             symbols.push(derive::PARAMETER.to_owned());
             symbols.extend((0..3).filter(|&c| c != reach.axis).map(|c| reach.varying()[c].to_owned()));
         } else if arithmetic == Arithmetic::Affine {
-            symbols.extend(self.coordinates().iter().map(|&name| name.to_owned()));
+            symbols.extend(self.coordinates());
         }
         Spec {
             graph: Arc::new(graph),
-            inputs: lanes.into_iter().map(str::to_owned).collect(),
+            inputs: lanes,
             uniforms,
             outputs,
             domain,

@@ -15,7 +15,7 @@ pub struct Evaluations {
     pub root: u64,
     /// Signs at single points.
     pub ends: u64,
-    /// Pieces of single rays.
+    /// Pieces of single rays, or of single pixels of a plane scene.
     pub piece: u64,
     /// Entries of rays into solids at the domain's face.
     pub face: u64,

@@ -9,6 +9,8 @@ use imp::program::scene::ShapeKind;
 use imp::render::Certainty;
 use imp::render::Options;
 use imp::render::Picture;
+use imp::session;
+use imp::session::Source;
 
 use crate::scenes::*;
 
@@ -80,7 +82,7 @@ fn axes_of_symmetry_are_found() {
 }
 
 #[test]
-fn poles_and_double_curves_are_not_proved() {
+fn poles_are_not_proved() {
     // y = 1 / x: the pole is the y axis; the curve comes near it only at the picture's edge.
     let hyperbola = plane(ShapeKind::Equation, |graph, x, y| {
         let one = graph.int(1);
@@ -92,13 +94,86 @@ fn poles_and_double_curves_are_not_proved() {
         assert_ne!(picture.certainty[row * 101 + 50], Certainty::Hit, "row {row}");
     }
     assert!(picture.stats.proved > 100);
+}
+
+#[test]
+fn double_curves_are_curves() {
     let double = plane(ShapeKind::Equation, |graph, x, y| {
         let field = circle(graph, x, y);
         graph.sqr(field)
     });
-    let picture = draw(&double, &options(64));
-    assert_eq!(picture.stats.proved, 0);
-    assert!(picture.stats.unknown > 100);
+    let picture = draw(&double, &options(64)).stats;
+    let simple = draw(&plane(ShapeKind::Equation, circle), &options(64)).stats;
+    assert_eq!((picture.proved, picture.unknown), (simple.proved, 0));
+}
+
+/// A plane scene from its text.
+fn text(text: &str) -> Scene {
+    let artefact = session::compile(Source::Text { name: "relation.imp", text }, &[]);
+    artefact.scene.unwrap_or_else(|| panic!("{:?}", artefact.diagnostics))
+}
+
+#[test]
+fn steps_are_not_joined() {
+    // Six steps; nothing between them, and nothing unknown. Pixel k is [k / 10 - 2.95, (k + 1) / 10 - 2.95], moved by less
+    // than a twentieth.
+    let picture = draw(&text("curve c: y = floor(x)\ndomain [-2.95, 2.95]^2"), &options(59));
+    assert_eq!(picture.stats.unknown, 0, "{:?}", picture.stats);
+    for (index, &certainty) in picture.certainty.iter().enumerate() {
+        let row = 58 - index / 59;
+        assert!(certainty == Certainty::Miss || row % 10 == 9, "column {}, row {row}", index % 59);
+    }
+    assert!((50..=60).contains(&picture.stats.proved), "{:?}", picture.stats);
+    for relation in ["y = mod(x, 1)", "y = if x < 0.1 then x else 2 - x", "y = floor(x) + floor(2x) / 4"] {
+        let stats = draw(&text(&format!("curve c: {relation}\ndomain [-2.95, 2.95]^2")), &options(90)).stats;
+        assert_eq!(stats.unknown, 0, "{relation}: {stats:?}");
+    }
+}
+
+#[test]
+fn equations_of_steps_have_areas() {
+    // Six squares along the diagonal, each ten pixels wide and touching eleven.
+    let picture = draw(&text("curve c: floor(x) = floor(y)\ndomain [-2.95, 2.95]^2"), &options(59)).stats;
+    assert_eq!(picture.unknown, 0, "{picture:?}");
+    assert!((580..=726).contains(&picture.proved), "{picture:?}");
+}
+
+#[test]
+fn two_equations_hold_at_points() {
+    let size = &options(100);
+    let none = draw(&text("curve c: y = x and y = x + 1e-5\ndomain [-10, 10]^2"), size).stats;
+    assert_eq!((none.proved, none.unknown), (0, 0), "{none:?}");
+    let four = draw(&text("curve c: y = x^2 - 4 and x^2 + y^2 = 16\ndomain [-10, 10]^2"), size).stats;
+    // y = -4 with a double contact at x = 0, which no interval can decide, and y = 3 at two points.
+    assert_eq!((four.proved, four.unknown), (2, 1), "{four:?}");
+    let right = draw(&text("curve c: y = x^2 - 4 and x^2 + y^2 = 16 and x > 0.5\ndomain [-10, 10]^2"), size).stats;
+    assert_eq!((right.proved, right.unknown), (1, 0), "{right:?}");
+    let same = draw(&text("curve c: y = x and 2y = 2x\ndomain [-10, 10]^2"), size).stats;
+    assert!(same.misses <= same.pixels - 199, "{same:?}");
+}
+
+#[test]
+fn dense_oscillations_are_proved() {
+    // Beyond x + y = 7 the curves are closer than pixels.
+    let scene = text("curve c: y - x = sin(exp(x + y))\ndomain [-10, 10]^2");
+    let picture = draw(&scene, &options(128));
+    assert!(picture.stats.proved > 400 && picture.stats.unknown < 20, "{:?}", picture.stats);
+    let single = draw(&scene, &Options { threads: Some(1), ..options(128) });
+    assert_eq!(picture.certainty, single.certainty);
+}
+
+#[test]
+fn crossings_of_families_of_curves_are_proved() {
+    let picture = draw(&text("curve c: sin(x) = cos(y)\ndomain [-10, 10]^2"), &options(128)).stats;
+    assert_eq!(picture.unknown, 0, "{picture:?}");
+    let waves = draw(&text("curve c: sin(x^2 + y^2) = cos(x y)\ndomain [-5, 5]^2"), &options(128)).stats;
+    assert!(waves.unknown < 8, "{waves:?}");
+}
+
+#[test]
+fn regions_with_jumps_are_decided() {
+    let picture = draw(&text("curve c: y < floor(x)\ndomain [-2.95, 2.95]^2"), &options(59)).stats;
+    assert_eq!(picture.unknown, 0, "{picture:?}");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::arrange::build::frame;
 use crate::arrange::build::frame::Step;
 use crate::arrange::build::incidence::Arm;
 use crate::arrange::build::incidence::Incidence;
+use crate::arrange::build::incidence::surrounds;
 use crate::arrange::check::Fault;
 use crate::arrange::check::ensure;
 use crate::arrange::complex::Axis;
@@ -264,6 +265,9 @@ impl<'a> Graph<'a> {
     fn strips(&mut self) {
         for (c, blocks) in self.block_vertices.clone().into_iter().enumerate() {
             let cell = &self.complex.cells[c];
+            if surrounds(cell) {
+                continue;
+            }
             for (k, hole) in cell.boundary.iter().enumerate().skip(1) {
                 for (b, v) in blocks.iter().enumerate().filter_map(|(b, v)| v.map(|v| (b, v))) {
                     let curves = self.vertices[v as usize].vertex.curves.clone();

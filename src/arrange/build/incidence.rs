@@ -15,6 +15,13 @@ use crate::arrange::structure::FaceId;
 /// A node as a cell sees it: the node, and the side on which the cell is.
 pub type Arm = (u32, usize);
 
+/// Whether all of a cell's boundary cycles border on the same face within it, unless arms part it: if it has just one, or if
+/// nothing but possibly an isolated point is proved to be in it.
+pub fn surrounds(cell: &Cell) -> bool {
+    let empty = |block: &Block| block.nodes.is_empty() && block.vertex.as_ref().is_some_and(|vertex| vertex.proved);
+    cell.boundary.len() == 1 || cell.blocks.iter().all(empty)
+}
+
 /// The tables.
 pub struct Incidence<'a> {
     complex: &'a Complex,
@@ -164,7 +171,11 @@ impl<'a> Incidence<'a> {
                 }
             }
         }
-        let simple = cell.boundary.len() == 1 || matches!(&cell.blocks[..], [block] if block.vertex.is_some());
+        if surrounds(cell) {
+            let starts: Vec<u32> = cell.boundary.iter().map(|cycle| self.end_gap(cycle[0].0, !cycle[0].1)).collect();
+            starts.windows(2).for_each(|pair| self.classes.unite(pair[0], pair[1]));
+        }
+        let simple = surrounds(cell) || matches!(&cell.blocks[..], [block] if block.vertex.is_some());
         ensure(simple, || format!("cell {c} has holes and is not one vertex"))?;
         let lone = cell.blocks.len() == 1 || cell.blocks.iter().all(|block| !block.nodes.is_empty());
         ensure(lone, || format!("cell {c} has an isolated point beside something else"))?;

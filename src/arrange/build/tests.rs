@@ -91,6 +91,18 @@ fn an_unresolved_ring_has_a_hole() {
     assert_eq!((counts.vertices.crossing, counts.vertices.boundary, counts.proved), (5, 4, false));
     // In the hole 4 + 4 + 4 edges, outwards 4, one strip; in the hole 4 faces in the circle and 4 around, outside 4.
     assert_eq!((counts.edges, counts.faces), (17, 12));
+    // A circle half in the hole and half in the ring, so that no arm leads outwards.
+    let counts = built(&Toy { curves: vec![Circle(0.3, 0.01, 0.15)], levels: 5, ..alone.clone() }).1;
+    assert_eq!((counts.faces, counts.components, counts.edges), (3, 1, 2));
+    // A ring that turns out to be empty, or to hold just a point.
+    let mut complex = alone.complex();
+    let cell = complex.cells.iter().position(|cell| cell.boundary.len() == 2).unwrap();
+    complex.cells[cell].blocks[0].vertex.as_mut().unwrap().proved = true;
+    complex.cells[cell].blocks[0].vertex.as_mut().unwrap().kind = VertexKind::Singular;
+    let counts = check(&build(complex.clone()).unwrap()).unwrap();
+    assert_eq!((counts.isolated, counts.edges, counts.faces, counts.proved), (1, 0, 1, true));
+    complex.cells[cell].blocks.clear();
+    assert_eq!(check(&build(complex).unwrap()).unwrap().faces, 1);
     // A circle that only the hole sees, and one around all.
     let (curves, ring) = (vec![Circle(0.02, 0.01, 0.11), Circle(0.0, 0.0, 0.99)], Some(([0.0, 0.0], 0.3, 0.6)));
     let counts = built(&Toy { curves, levels: 5, ring, ..alone }).1;

@@ -51,39 +51,81 @@ impl Place {
         }
     }
 
-    /// Bisects until it is no wider than this.
+    /// Narrows it until it is no wider than this, by secants that double the digits where they succeed (quadratic
+    /// interval refinement; Abbott 2014).
     pub fn refine(&mut self, poly: &Univariate, width: &BigRational) {
-        let mut below = None;
+        let degree = poly.degree();
+        let mut cuts = 1u32;
+        let below = if self.is_exact() { Ordering::Equal } else { sign_after(poly, &self.lo) };
         while !self.is_exact() && self.width() > *width {
-            let below = *below.get_or_insert_with(|| sign_after(poly, &self.lo));
-            let middle = midpoint(&self.lo, &self.hi);
-            match poly.sign_at(&middle) {
-                Ordering::Equal => (self.lo, self.hi) = (middle.clone(), middle),
-                sign if sign == below => self.lo = middle,
-                _ => self.hi = middle,
+            // Values at the ends over one denominator; an end may be another root, and then the guess is bad, no more.
+            let (p, q) = (poly.numerator_at(&self.lo), poly.numerator_at(&self.hi));
+            let (p, q) = (p * self.hi.denom().pow(degree as u32), q * self.lo.denom().pow(degree as u32));
+            let (p, q) = (p.abs(), q.abs());
+            let (sum, parts) = (&p + &q, BigInt::one() << cuts);
+            let guess = if sum.is_zero() { BigInt::one() } else { ((p * &parts * 2) / sum + 1) / 2 };
+            let guess: BigInt = guess.clamp(BigInt::one(), &parts - 1);
+            let at = |k: &BigInt| &self.lo + self.width() * BigRational::new(k.clone(), parts.clone());
+            let (middle, start) = (at(&guess), self.lo.clone());
+            let sign = poly.sign_at(&middle);
+            if sign == Ordering::Equal {
+                (self.lo, self.hi) = (middle.clone(), middle);
+                return;
             }
+            // The next cut on the side of the root confirms the guess.
+            let other = at(&(if sign == below { &guess + 1 } else { &guess - 1 }));
+            let confirmed = if other == start || other == self.hi {
+                true
+            } else {
+                match poly.sign_at(&other) {
+                    Ordering::Equal => {
+                        (self.lo, self.hi) = (other.clone(), other);
+                        return;
+                    }
+                    next => (next == below) != (sign == below),
+                }
+            };
+            if sign == below {
+                self.lo = middle;
+            } else {
+                self.hi = middle;
+            }
+            if confirmed {
+                if sign == below {
+                    self.hi = other;
+                } else {
+                    self.lo = other;
+                }
+            }
+            cuts = if confirmed { (2 * cuts).min(MAX_CUTS) } else { (cuts / 2).max(1) };
         }
     }
 
-    /// Bisects until the ends are neighbouring floating-point numbers or nearly so, or the root is found as a number.
+    /// Narrows it until the ends are neighbouring floating-point numbers or nearly so, or the root is found as a number.
     pub fn tighten(&mut self, poly: &Univariate) {
-        for round in 0..MAX_INTERVALS {
-            let enclosure = self.enclosure();
-            if self.is_exact() || enclosure.lo().next_up().next_up() >= enclosure.hi() {
+        // Each round gains 50 bits or more; floating-point numbers go down to 2^-1074.
+        for _ in 0..32 {
+            if self.is_exact() {
                 return;
             }
             // A root with a small denominator, 0 above all, is found as such.
-            if round % 24 == 8 {
-                let simple = simplest_between(&self.lo, &self.hi);
-                if poly.sign_at(&simple) == Ordering::Equal {
-                    (self.lo, self.hi) = (simple.clone(), simple);
-                    return;
-                }
+            let simple = simplest_between(&self.lo, &self.hi);
+            if poly.sign_at(&simple) == Ordering::Equal {
+                (self.lo, self.hi) = (simple.clone(), simple);
+                return;
             }
-            self.bisect(poly);
+            let enclosure = self.enclosure();
+            if enclosure.lo().next_up().next_up() >= enclosure.hi() {
+                return;
+            }
+            let magnitude = self.lo.abs().max(self.hi.abs());
+            self.refine(poly, &(magnitude / (BigInt::one() << 54u32)));
         }
     }
 }
+
+/// Parts that a place is cut into at once, as a power of 2.
+const MAX_CUTS: u32 = 1024;
 
 /// The number halfway.
 pub fn midpoint(lo: &BigRational, hi: &BigRational) -> BigRational {

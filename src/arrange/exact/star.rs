@@ -2,8 +2,9 @@
 //!
 //! Over an interval of x without roots of discriminants, resultants and leading coefficients, the zeros of the polynomials are
 //! disjoint graphs of functions (delineability; Collins 1975). With the top and the bottom of the box free of zeros, each
-//! graph that is inside stays inside. So if the interval has one such root a, all graphs in the box over either side of a
-//! end on the line x = a, in zeros there; if the line has one zero in the box, they all end in it.
+//! graph that is inside stays inside. At a root a of them nothing happens to the graphs if the zeros on the line x = a
+//! within the box are simple and belong to one polynomial each: graphs pass. So if this is so for all roots but one, all
+//! graphs over either side of that one end on its line, in zeros there; if it has one zero in the box, they all end in it.
 
 use std::cmp::Ordering;
 
@@ -29,6 +30,9 @@ use crate::interval::Interval;
 
 /// How often the box is made 4 times as high.
 const MAX_ENLARGEMENTS: u32 = 12;
+
+/// Numbers in the range of x that are looked at one by one.
+const MAX_EVENTS: usize = 8;
 
 /// By how much of its size the area is widened to each side: more, if an end is an event.
 const MARGINS: [f64; 3] = [0.125, 0.171, 0.093];
@@ -115,6 +119,27 @@ struct Question<'a> {
     exchange: usize,
 }
 
+/// What is on a vertical line within a box.
+#[derive(Default)]
+struct Line {
+    /// Positions of curves with a zero on it, and for each whether its derivative by y vanishes in one.
+    through: Vec<usize>,
+    steep: Vec<bool>,
+    /// Two curves have a zero in common.
+    meeting: bool,
+    /// There are different zeros on it.
+    several: bool,
+    /// Positions of vertical lines that are this one.
+    vertical: Vec<usize>,
+}
+
+impl Line {
+    /// Whether it is more than a place that curves pass, each by itself and in the direction of x.
+    fn is_event(&self) -> bool {
+        self.meeting || self.steep.contains(&true) || !self.vertical.is_empty()
+    }
+}
+
 /// A box with exact sides.
 struct Frame {
     x: [BigRational; 2],
@@ -138,15 +163,28 @@ impl Question<'_> {
             return Err(Failure::Unknown("an unbounded area"));
         }
         let sides = [exact(x.lo()), exact(x.hi())];
-        let event = self.event(&sides)?;
+        let events = self.events(&sides)?;
         let frame = self.frame(x, sides, widened(area[1], margin))?;
-        let Some(mut fibre) = event else { return self.arcs(&frame) };
-        self.star(&frame, &mut fibre)
+        let mut found = None;
+        for mut fibre in events {
+            let line = self.line(&frame, &mut fibre)?;
+            if !line.is_event() {
+                continue;
+            }
+            if found.is_some() {
+                return Err(Failure::Several("several events"));
+            }
+            found = Some((fibre, line));
+        }
+        match found {
+            Some((mut fibre, line)) => self.star(&frame, &mut fibre, &line),
+            None => self.arcs(&frame),
+        }
     }
 
-    /// The one number in an interval of x where something may happen; `None` if there is none.
-    fn event(&self, [lo, hi]: &[BigRational; 2]) -> Result<Option<Fibre>, Failure> {
-        let mut events: Option<Univariate> = None;
+    /// The numbers in an interval of x where something may happen.
+    fn events(&self, [lo, hi]: &[BigRational; 2]) -> Result<Vec<Fibre>, Failure> {
+        let mut factors: Vec<Univariate> = Vec::new();
         for i in 0..self.indices.len() {
             for j in i..self.indices.len() {
                 for factor in self.algebra.events(self.exchange, self.indices[i], self.indices[j])?.iter() {
@@ -156,21 +194,22 @@ impl Question<'_> {
                     if factor.sign_at(lo).is_eq() || factor.sign_at(hi).is_eq() {
                         return Err(Failure::End);
                     }
-                    match roots::isolate(factor, lo, hi).ok_or(TooLarge)?.len() {
-                        0 => {}
-                        1 => events = Some(events.map_or_else(|| factor.clone(), |events| events.gcd(factor))),
-                        _ => return Err(Failure::Several("events above one another or side by side")),
+                    if !roots::isolate(factor, lo, hi).ok_or(TooLarge)?.is_empty() {
+                        insert(&mut factors, factor);
                     }
                 }
             }
         }
-        let Some(events) = events else { return Ok(None) };
-        // If all factors have the same root, their common divisor has it.
-        let mut places = roots::isolate(&events, lo, hi).ok_or(TooLarge)?;
-        match places.pop() {
-            Some(place) => Ok(Some(Fibre::new(&events, place))),
-            None => Err(Failure::Several("events side by side")),
+        // The factors are coprime now, so different roots are different numbers.
+        let mut fibres = Vec::new();
+        for factor in &factors {
+            let places = roots::isolate(factor, lo, hi).ok_or(TooLarge)?;
+            if fibres.len() + places.len() > MAX_EVENTS {
+                return Err(Failure::Several("many events above one another or side by side"));
+            }
+            fibres.extend(places.into_iter().map(|place| Fibre::new(factor, place)));
         }
+        Ok(fibres)
     }
 
     /// The area, enlarged in y until its top and bottom are free of zeros.
@@ -245,57 +284,71 @@ impl Question<'_> {
         Ok(Finding::Arcs(Arcs { within: frame.within, counts }))
     }
 
+    /// What is on a vertical line.
+    fn line(&self, frame: &Frame, fibre: &mut Fibre) -> Result<Line, Failure> {
+        let [lo, hi] = &frame.y;
+        let mut line = Line::default();
+        for i in self.curves() {
+            let poly = self.poly(i);
+            if fibre.reduce(poly).is_zero() {
+                return Err(Failure::Unknown("a curve contains a vertical line"));
+            }
+            let zeros = fibre.roots(poly, lo, hi, None)?.len();
+            if zeros > 0 {
+                line.through.push(i);
+                line.several |= zeros > 1;
+                let steep = self.meet(fibre, poly, &poly.derivative_y(), frame)?;
+                line.steep.push(steep);
+            }
+        }
+        let through = line.through.as_slice();
+        let mut partners = 0;
+        for &i in through.iter().skip(1) {
+            partners += usize::from(self.meet(fibre, self.poly(through[0]), self.poly(i), frame)?);
+        }
+        // With one zero of each, all are one point if each is that of the first.
+        line.several |= partners + 1 < through.len();
+        line.meeting = partners > 0;
+        for (k, &i) in through.iter().enumerate().skip(2) {
+            for &j in &through[1..k] {
+                line.meeting = line.meeting || self.meet(fibre, self.poly(i), self.poly(j), frame)?;
+            }
+        }
+        let vertical: Vec<usize> = (0..self.indices.len()).filter(|&i| self.poly(i).degree_y() == 0).collect();
+        line.vertical = vertical.into_iter().filter(|&i| fibre.is_zero(&self.poly(i).leading())).collect();
+        Ok(line)
+    }
+
     /// With all events on one line.
-    fn star(&self, frame: &Frame, fibre: &mut Fibre) -> Result<Finding, Failure> {
+    fn star(&self, frame: &Frame, fibre: &mut Fibre, line: &Line) -> Result<Finding, Failure> {
+        if line.several {
+            return Err(Failure::Several("several points on a line"));
+        }
         let count = self.indices.len();
         let [lo, hi] = &frame.y;
         let height = hi - lo;
-        let mut through: Vec<usize> = Vec::new();
-        for i in self.curves() {
-            let poly = fibre.reduce(self.poly(i));
-            if poly.is_zero() {
-                return Err(Failure::Unknown("a curve contains a vertical line"));
-            }
-            match fibre.roots(&poly, lo, hi, None)?.len() {
-                0 => {}
-                1 => through.push(i),
-                _ => return Err(Failure::Several("one curve has several points on the line")),
-            }
-        }
-        // All in the same point.
-        for &i in through.iter().skip(1) {
-            if !self.meet(fibre, self.poly(through[0]), self.poly(i), frame)? {
-                return Err(Failure::Several("several points on the line"));
-            }
-        }
-        let lines: Vec<usize> = (0..count).filter(|&i| self.poly(i).degree_y() == 0).collect();
-        let lines: Vec<usize> = lines.into_iter().filter(|&i| fibre.is_zero(&self.poly(i).leading())).collect();
-        let Some(&first) = through.first() else {
-            // Nothing can end on the line.
+        let lines = &line.vertical;
+        let Some(&first) = line.through.first() else {
+            // All other curves are functions of x from one side to the other, and none crosses the line: there are none.
             let mut counts = vec![0; count];
             lines.iter().for_each(|&i| counts[i] += 1);
-            let within = frame.within;
-            return Ok(if lines.is_empty() {
-                Finding::Nothing(within)
-            } else {
-                Finding::Arcs(Arcs { within, counts })
-            });
+            return Ok(Finding::Arcs(Arcs { within: frame.within, counts }));
         };
         let (left, right) = (self.side(frame, &frame.x[0])?, self.side(frame, &frame.x[1])?);
         let mut around = right;
-        around.extend(&lines);
+        around.extend(lines);
         around.extend(left.iter().rev());
-        around.extend(&lines);
+        around.extend(lines);
         let mut branches = vec![Branch::default(); count];
         around.iter().for_each(|&i| branches[i].arms += 1);
         let mut steep = vec![false; count];
-        for &i in &through {
+        for (&i, &is_steep) in line.through.iter().zip(&line.steep) {
             let poly = self.poly(i);
-            steep[i] = self.meet(fibre, poly, &poly.derivative_y(), frame)?;
+            steep[i] = is_steep;
             branches[i].through = true;
-            branches[i].singular = steep[i] && self.meet(fibre, poly, &poly.derivative_x(), frame)?;
+            branches[i].singular = is_steep && self.meet(fibre, poly, &poly.derivative_x(), frame)?;
         }
-        for &i in &lines {
+        for &i in lines {
             branches[i].through = true;
             steep[i] = true;
         }
@@ -329,7 +382,7 @@ impl Question<'_> {
         Ok(Finding::Star(star))
     }
 
-    /// Whether two polynomials, the first with one zero on the line in the box, have it in common.
+    /// Whether two polynomials have a zero on the line in the box in common.
     fn meet(&self, fibre: &mut Fibre, f: &Polynomial, g: &Polynomial, frame: &Frame) -> Result<bool, Failure> {
         let common = fibre.common(f, g)?;
         Ok(!fibre.roots(&common, &frame.y[0], &frame.y[1], None)?.is_empty())
@@ -340,6 +393,26 @@ impl Question<'_> {
         let (f, g) = (self.poly(i), self.poly(j));
         let jacobian = f.derivative_x().mul(&g.derivative_y()).sub(&f.derivative_y().mul(&g.derivative_x()));
         self.meet(fibre, f, &jacobian, frame)
+    }
+}
+
+/// Adds a square-free polynomial to pairwise coprime ones.
+fn insert(factors: &mut Vec<Univariate>, factor: &Univariate) {
+    let mut rest = factor.clone();
+    for i in 0..factors.len() {
+        let common = factors[i].gcd(&rest);
+        if common.is_constant() {
+            continue;
+        }
+        let (Some(left), Some(right)) = (factors[i].divide(&common), rest.divide(&common)) else { continue };
+        factors[i] = common;
+        if !left.is_constant() {
+            factors.push(left);
+        }
+        rest = right;
+    }
+    if !rest.is_constant() {
+        factors.push(rest);
     }
 }
 

@@ -3,16 +3,16 @@
 //! The fit is one by numbers, not by proof: cubic curves with the tangents of the gradient whose area and moment match
 //! (R. Levien, "Fitting cubic Bezier curves", 2021), halved until they are near enough to the polyline.
 
+use std::ops::Range;
+
 use kurbo::BezPath;
 use kurbo::CubicBez;
-use kurbo::CurveFitSample;
 use kurbo::Line;
 use kurbo::ParamCurve;
-use kurbo::ParamCurveDeriv;
-use kurbo::ParamCurveFit;
 use kurbo::ParamCurveNearest;
 use kurbo::Point;
 use kurbo::Vec2;
+use kurbo::simplify::SimplifyBezPath;
 
 use crate::arrange::field::Fields;
 use crate::arrange::field::Function;
@@ -107,7 +107,8 @@ fn spline(chain: &Chain, gradients: &[[f64; 2]], accuracy: f64) -> Spline {
         while graph(start) && end < chain.len() && graph(end) {
             end += 1;
         }
-        fit(&Run(&pieces[start..end]), 0..end - start, &points[start..=end], accuracy, &mut |curve, distance| {
+        let run = Run::new(&pieces[start..end], &points[start..=end], accuracy);
+        run.fit(0..end - start, &mut |curve, distance| {
             let [a, b, c] = [curve.p1, curve.p2, curve.p3].map(|point| origin + point.to_vec2());
             spline.path.curve_to(a, b, c);
             spline.measured = spline.measured.max(distance);
@@ -132,59 +133,44 @@ fn hermite(ends: [Point; 2], tangents: [Option<Vec2>; 2]) -> CubicBez {
     CubicBez::new(ends[0], ends[0] + first, ends[1] - last, ends[1])
 }
 
-/// Consecutive curves as one, with the parameter from 0 to their number.
-struct Run<'a>(&'a [CubicBez]);
-
-impl Run<'_> {
-    fn at(&self, t: f64) -> (&CubicBez, f64) {
-        let index = (t.max(0.0) as usize).min(self.0.len() - 1);
-        (&self.0[index], t - index as f64)
-    }
-}
-
-impl ParamCurveFit for Run<'_> {
-    fn sample_pt_tangent(&self, t: f64, _sign: f64) -> CurveFitSample {
-        let (p, tangent) = self.sample_pt_deriv(t);
-        CurveFitSample { p, tangent }
-    }
-
-    fn sample_pt_deriv(&self, t: f64) -> (Point, Vec2) {
-        let (curve, t) = self.at(t);
-        (curve.eval(t), curve.deriv().eval(t).to_vec2())
-    }
-
-    fn break_cusp(&self, _range: std::ops::Range<f64>) -> Option<f64> {
-        None
-    }
-}
-
-/// Fits one curve to a range of a run, or halves the range; hands over curves with their measured distances.
-fn fit(
-    run: &Run,
-    range: std::ops::Range<usize>,
-    points: &[Point],
+/// What curves are fitted to: a smooth path with one piece for each segment of the polyline beside it.
+struct Run<'a> {
+    path: SimplifyBezPath,
+    pieces: &'a [CubicBez],
+    points: &'a [Point],
     accuracy: f64,
-    accept: &mut impl FnMut(CubicBez, f64),
-) {
-    let own = &points[range.start..=range.end];
-    if range.len() == 1 {
-        let curve = run.0[range.start];
-        accept(curve, distance(&curve, own));
-        return;
+}
+
+impl<'a> Run<'a> {
+    fn new(pieces: &'a [CubicBez], points: &'a [Point], accuracy: f64) -> Self {
+        let mut path = BezPath::new();
+        path.move_to(points[0]);
+        pieces.iter().for_each(|piece| path.curve_to(piece.p1, piece.p2, piece.p3));
+        Self { path: SimplifyBezPath::new(path), pieces, points, accuracy }
     }
-    let fitted = kurbo::fit_to_cubic(run, range.start as f64..range.end as f64, accuracy);
-    if let Some((curve, _)) = fitted {
-        let curve = CubicBez::new(own[0], curve.p1, curve.p2, own[own.len() - 1]);
-        let distance = distance(&curve, own);
-        // The polyline itself is up to the accuracy from what was fitted.
-        if distance <= 2.0 * accuracy {
-            accept(curve, distance);
+
+    /// Fits one curve to a range of pieces, or halves the range; hands over curves with their measured distances.
+    fn fit(&self, range: Range<usize>, accept: &mut impl FnMut(CubicBez, f64)) {
+        let own = &self.points[range.start..=range.end];
+        if range.len() == 1 {
+            let curve = self.pieces[range.start];
+            accept(curve, distance(&curve, own));
             return;
         }
+        let [from, to] = [range.start, range.end].map(|at| at as f64 / self.pieces.len() as f64);
+        if let Some((curve, _)) = kurbo::fit_to_cubic(&self.path, from..to, self.accuracy) {
+            let curve = CubicBez::new(own[0], curve.p1, curve.p2, own[own.len() - 1]);
+            let distance = distance(&curve, own);
+            // The polyline itself is up to the accuracy from what was fitted.
+            if distance <= 2.0 * self.accuracy {
+                accept(curve, distance);
+                return;
+            }
+        }
+        let middle = range.start + range.len() / 2;
+        self.fit(range.start..middle, accept);
+        self.fit(middle..range.end, accept);
     }
-    let middle = range.start + range.len() / 2;
-    fit(run, range.start..middle, points, accuracy, accept);
-    fit(run, middle..range.end, points, accuracy, accept);
 }
 
 /// The Hausdorff distance between a curve and a polyline, measured at the polyline's points and at many of the curve's.

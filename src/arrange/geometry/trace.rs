@@ -4,7 +4,6 @@ use std::collections::HashMap;
 
 use crate::arrange::complex::Axis;
 use crate::arrange::complex::Cell;
-use crate::arrange::complex::VertexKind;
 use crate::arrange::field::Function;
 use crate::arrange::geometry::arc::Arc;
 use crate::arrange::geometry::arc::Body;
@@ -17,6 +16,7 @@ use crate::arrange::geometry::refine::enclose;
 use crate::arrange::structure::Arrangement;
 use crate::arrange::structure::Edge;
 use crate::arrange::structure::EdgeKind;
+use crate::arrange::structure::Site;
 use crate::interval::Interval;
 
 /// A point that an edge passes, with the node that it is.
@@ -39,22 +39,14 @@ fn around(cell: &Cell) -> Rect {
 
 /// The points between which an edge passes its cells, one more than those; `None` if the two do not match.
 fn stations(arrangement: &Arrangement, index: usize, edge: &Edge) -> Option<Vec<Station>> {
-    let vertex = |side: usize| &arrangement.vertices[arrangement.halfedges[2 * index + side].origin as usize].vertex;
-    let [first, last] = [vertex(0), vertex(1)];
-    // Vertices of these kinds are nodes themselves.
-    let node = |kind| matches!(kind, VertexKind::Boundary | VertexKind::Loop);
-    let (open, close) = match (edge.cells.len() + 1).checked_sub(edge.nodes.len())? {
-        0 => (false, false),
-        1 if node(first.kind) => (false, true),
-        1 => (true, false),
-        2 => (true, true),
-        _ => return None,
+    // A vertex on a node is the first or the last of them already.
+    let inner = |side: usize| {
+        let vertex = &arrangement.vertices[arrangement.halfedges[2 * index + side].origin as usize];
+        matches!(vertex.site, Site::Block { .. }).then_some((vertex.vertex.area, None))
     };
-    let mut stations = Vec::with_capacity(edge.cells.len() + 1);
-    stations.extend(open.then_some((first.area, None)));
-    stations.extend(edge.nodes.iter().map(|&node| (place(arrangement, node), Some(node))));
-    stations.extend(close.then_some((last.area, None)));
-    Some(stations)
+    let nodes = edge.nodes.iter().map(|&node| (place(arrangement, node), Some(node)));
+    let stations: Vec<Station> = inner(0).into_iter().chain(nodes).chain(inner(1)).collect();
+    (stations.len() == edge.cells.len() + 1).then_some(stations)
 }
 
 /// The stretches of all edges, by edge; `functions` are those of the components. Empty where an edge has no known course.

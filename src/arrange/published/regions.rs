@@ -1,5 +1,6 @@
 //! Region labelling and region adjacency: leaves of the same label that share a stretch of side are one region.
 
+use crate::arrange::build::union::Classes;
 use crate::arrange::published::Graph;
 use crate::arrange::published::Leaves;
 use crate::arrange::published::Region;
@@ -40,7 +41,7 @@ pub(super) fn connect(domain: [Interval; 2], tree: Tree) -> Graph {
     let mut borders = borders(&tree.leaves, finest);
 
     // Leaves to regions, numbered by their first leaf.
-    let mut groups = Groups::new(tree.leaves.len());
+    let mut groups = Classes::new(tree.leaves.len());
     for border in &borders {
         if let [Some(a), Some(b)] = border.sides
             && tree.leaves[a as usize].label == tree.leaves[b as usize].label
@@ -53,7 +54,7 @@ pub(super) fn connect(domain: [Interval; 2], tree: Tree) -> Graph {
     let mut counts = Leaves::default();
     let mut leaves = Vec::with_capacity(tree.leaves.len());
     for (i, &leaf) in (0u32..).zip(&tree.leaves) {
-        let id = *region_of_root[groups.root(i) as usize].get_or_insert_with(|| {
+        let id = *region_of_root[groups.find(i) as usize].get_or_insert_with(|| {
             regions.push(new_region(domain, &tree.labels, leaf));
             regions.len() as u32 - 1
         });
@@ -156,29 +157,4 @@ fn borders(leaves: &[Leaf], finest: u32) -> Vec<Border> {
         }
     }
     borders
-}
-
-/// Sets of leaves that are being united.
-struct Groups(Vec<u32>);
-
-impl Groups {
-    fn new(len: usize) -> Self {
-        Self((0..len as u32).collect())
-    }
-
-    /// The smallest member that is known to be in the same set.
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            // Halve the path on the way.
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

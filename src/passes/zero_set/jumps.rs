@@ -34,7 +34,9 @@ pub fn split(space: &mut Space, branch: &Branch, room: usize) -> Option<Vec<Bran
     for &jump in &jumps {
         total = total.checked_mul(count(space, jump)?).filter(|&total| total <= room)?;
     }
-    let first = *jumps.first()?;
+    // Arms of a selection come after it: where they are not selected, nothing in them need be defined.
+    let outside = space.below(branch.field, |op, _| op == Op::Select);
+    let first = *jumps.iter().find(|jump| outside.contains(jump))?;
     let replaced = match space.shape(first) {
         // Whatever else depends on the condition is decided with it.
         (Op::Select, &[condition, ..]) => condition,
@@ -198,4 +200,10 @@ pub fn atom(space: &mut Space, value: Value) -> Option<Value> {
         (Op::Less | Op::LessEqual | Op::Equal, _) => Some(space.push(Op::Sub, &operands)),
         _ => None,
     }
+}
+
+/// Whether a value changes at jumps alone: it has no zeros of its own then, but whole regions of them.
+pub fn is_constant_between(space: &Space, value: Value) -> bool {
+    let step = |op: Op, _: usize| matches!(op, Op::Floor | Op::Ceil | Op::Round | Op::Sign);
+    space.below(value, step).iter().all(|&v| !matches!(space.shape(v).0, Op::Var(_)))
 }

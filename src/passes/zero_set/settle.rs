@@ -151,7 +151,7 @@ fn simple(space: &mut Space, value: Value, atoms: &mut Vec<Value>) {
             Some(parts) => open.extend(parts.into_iter().rev().map(|part| part.field)),
             None => {
                 let value = normal(space, value);
-                if !space.never_zero(value) {
+                if !space.never_zero(value) && !jumps::is_constant_between(space, value) {
                     atoms.push(value);
                 }
             }

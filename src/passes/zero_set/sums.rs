@@ -292,8 +292,8 @@ fn common_factor(space: &mut Space, sum: &Sum) -> Option<Vec<Alternative>> {
     all(common.into_keys().chain([rest]))
 }
 
-/// a + b sqrt(u) = 0 as a^2 = b^2 u with a b <= 0 (and u >= 0 where b may vanish), for a root that occurs nowhere else and
-/// may be 0: there the field has no derivative, and its curve ends or turns.
+/// a + b sqrt(u) = 0 as a^2 = b^2 u with a b <= 0, for b other than 0 and a root that occurs nowhere else and may be 0: there
+/// the field has no derivative, and its curve ends or turns. Where b vanishes, the square would cross itself.
 fn root(space: &mut Space, sum: &Sum) -> Option<Vec<Alternative>> {
     let is_open = |space: &Space, v: Value| match space.shape(v) {
         (Op::Sqrt, &[u]) => space.enclosure(u).lo() <= 0.0,
@@ -322,6 +322,9 @@ fn root(space: &mut Space, sum: &Sum) -> Option<Vec<Alternative>> {
     let a = rest.build(space);
     let b = product(space, powers[index].iter().map(|(&v, &n)| (v, if v == base { 0 } else { n })));
     let b = space.times(&c, b);
+    if !space.never_zero(b) {
+        return None;
+    }
     let [a_squared, b_squared] = [a, b].map(|v| space.unary(Op::Sqr, v));
     let scaled = space.binary(Op::Mul, b_squared, u);
     let field = space.binary(Op::Sub, a_squared, scaled);
