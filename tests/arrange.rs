@@ -8,6 +8,7 @@ mod figures;
 mod formulas;
 
 use std::collections::BTreeSet;
+use std::time::Instant;
 
 use cases::Case;
 use figures::Figures;
@@ -15,11 +16,28 @@ use figures::arranged;
 use imp::arrange::Options;
 
 /// Cases that are not fully proved, and why.
-const OPEN: &[(&str, &str)] = &[];
+const OPEN: &[(&str, &str)] = &[
+    ("circle that touches the frame", "a contact with a side of the domain is no crossing of it"),
+    ("crossing on the frame", "two curves pass through one point of a side"),
+    ("half disc", "two ends in one point"),
+    ("corner of a maximum", "a corner of one curve has no slope"),
+    ("square of a maximum", "corners of one curve have no slope"),
+    ("cube root and line", "the slope of the cube root is unbounded in 0"),
+];
+
+/// Cases that take seconds, all of them around points where an enclosure says little: left out unless `IMP_ARRANGE_ALL` is
+/// set. None of them is fully proved.
+const COSTLY: &[&str] = &["cusp of the second kind", "deltoid", "rose of 8 petals", "bicorn"];
 
 /// Contacts of curves that are no polynomials: a double root, which no enclosure of width above 0 tells from none or two.
 /// If one of these comes out as proved, look how.
 const UNDECIDABLE: &[&str] = &["exponential and its tangent", "x^y = y^x", "sine and its inverse relation"];
+
+/// The cases to arrange.
+fn tried() -> impl Iterator<Item = &'static Case> {
+    let costly = std::env::var_os("IMP_ARRANGE_ALL").is_some();
+    all().filter(move |case| costly || !COSTLY.contains(&case.name))
+}
 
 fn all() -> impl Iterator<Item = &'static Case> {
     let tables = [cases::CIRCLES, cases::SINGULAR, cases::NAMED, cases::REPEATED, cases::FRAMED, formulas::FORMULAS];
@@ -30,11 +48,13 @@ fn all() -> impl Iterator<Item = &'static Case> {
 fn judged(options: &Options) -> (Vec<String>, BTreeSet<&'static str>) {
     let mut wrong = Vec::new();
     let mut proved = BTreeSet::new();
-    for case in all() {
+    for case in tried() {
+        let start = Instant::now();
         let outcome = arranged(case.scene, options).and_then(|arrangement| Figures::of(&arrangement));
         match outcome {
             Err(said) => wrong.push(format!("{}: {said}", case.name)),
             Ok(figures) => {
+                println!("{} ms, {}: {}", start.elapsed().as_millis(), figures.proved, case.name);
                 if figures.proved {
                     proved.insert(case.name);
                 }
@@ -51,7 +71,7 @@ fn names_and_scenes_are_distinct() {
     let scenes: BTreeSet<_> = all().map(|case| case.scene).collect();
     assert_eq!((names.len(), scenes.len()), (all().count(), all().count()));
     assert!(all().all(|case| !case.source.is_empty()));
-    let listed = OPEN.iter().map(|(name, _)| name).chain(UNDECIDABLE);
+    let listed = OPEN.iter().map(|(name, _)| name).chain(UNDECIDABLE).chain(COSTLY);
     assert!(listed.clone().all(|name| names.contains(name)), "{:?}", listed.collect::<Vec<_>>());
 }
 
@@ -71,13 +91,15 @@ fn the_tables_obey_eulers_formula() {
     }
 }
 
+/// With the epsilon of the source's own measurements.
 #[test]
 fn what_is_said_to_be_proved_is_right() {
-    let (mut wrong, proved) = judged(&Options::default());
+    let (mut wrong, proved) = judged(&Options { epsilon: Some(1e-6), ..Options::default() });
     println!("{} of {} fully proved", proved.len(), all().count());
-    for case in all().filter(|case| !proved.contains(case.name)) {
+    for case in tried().filter(|case| !proved.contains(case.name)) {
         println!("open: {}", case.name);
-        if !OPEN.iter().any(|(name, _)| *name == case.name) && !UNDECIDABLE.contains(&case.name) {
+        let listed = OPEN.iter().map(|(name, _)| name).chain(UNDECIDABLE).chain(COSTLY);
+        if !listed.into_iter().any(|name| *name == case.name) {
             wrong.push(format!("{}: no longer proved", case.name));
         }
     }
