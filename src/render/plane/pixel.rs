@@ -97,12 +97,9 @@ pub fn settle(evaluator: &mut Evaluator, solid: bool, areas: &[[Interval; 2]]) -
         let blunt = if level == 0 { blunt.collect() } else { Vec::new() };
         let searchable = |index: &usize| pixels[*index].equation.is_some() && !pixels[*index].lost;
         let [blunt, fine] = [&blunt, &crowded].map(|list| list.iter().copied().filter(searchable).collect::<Vec<_>>());
-        for index in search(evaluator, &pixels, &fine) {
-            pixels[index].crossed = true;
-        }
-        let left = fine.iter().copied().filter(|&index| !pixels[index].crossed);
-        let exactly: Vec<usize> = blunt.into_iter().chain(left).collect();
-        for index in search_exactly(evaluator, &pixels, &exactly) {
+        let found = search_exactly(evaluator, &pixels, &blunt);
+        let found = found.into_iter().chain(search(evaluator, &pixels, &fine)).collect::<Vec<_>>();
+        for index in found {
             pixels[index].crossed = true;
         }
         for &pixel in &crowded {
