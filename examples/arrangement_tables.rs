@@ -327,9 +327,8 @@ impl Certified {
 fn certified(scene: &Scene, epsilon: f64) -> Result<Certified, Box<dyn Error>> {
     let start = Instant::now();
     let options = arrange::Options { epsilon: Some(epsilon), ..arrange::Options::default() };
-    let fields = Fields::new(scene, session::backend()).map_err(title)?;
-    let (complex, stopped) = patiently(|control| arrange::solve(&fields, &options, None, control));
-    let arrangement = arrange::build::build(complex)?;
+    let (arrangement, stopped) = patiently(|control| arrange::arrange(scene, &options, session::backend(), control));
+    let arrangement = arrangement.map_err(title)?;
     let seconds = start.elapsed().as_secs_f64();
     let counts = check::check(&arrangement)?;
     let effort = arrangement.complex.effort;

@@ -199,13 +199,17 @@ fn an_interrupt_leaves_what_there_is() {
     use std::process::Stdio;
     use std::time::Duration;
 
-    let folder = folder(&[("dense.imp", "curve c: sin(40 x^2 + 31 y^3) = cos(37 x y)\ndomain [-6, 6]^2\n")]);
+    // So many crossings that finding them all takes seconds.
+    let lines =
+        (1..600).map(|i| format!("curve l{i}: y = {} (x - {}) + {}\n", i * 7919 % 601 - 300, i, i * 104_729 % 599));
+    let text = lines.collect::<String>() + "domain [0, 600]^2\n";
+    let folder = folder(&[("dense.imp", &text)]);
     let mut child = command(folder.path(), &["arrange", "dense.imp", "--json", "-o", "out.json"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    std::thread::sleep(Duration::from_millis(700));
+    std::thread::sleep(Duration::from_millis(1000));
     assert!(child.try_wait().unwrap().is_none(), "this scene should take longer");
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());

@@ -2,6 +2,7 @@
 //! component, isolated as simple roots.
 
 use std::collections::HashMap;
+use std::collections::HashSet;
 
 use crate::arrange::complex::Axis;
 use crate::arrange::field::Fields;
@@ -52,6 +53,10 @@ impl Side {
             Axis::X => [range, Interval::point(self.at)],
             Axis::Y => [Interval::point(self.at), range],
         }
+    }
+
+    fn key(&self) -> [u64; 3] {
+        [self.at, self.from, self.to].map(f64::to_bits)
     }
 
     fn along(&self) -> usize {
@@ -115,6 +120,8 @@ pub struct Isolator<'a> {
     pub fields: &'a Fields,
     pub evaluations: u64,
     known: HashMap<([u64; 3], Axis, u32), Option<Vec<Crossing>>>,
+    /// Where a component vanishes all along a side; no quartering will help there.
+    flat: HashSet<[u64; 3]>,
 }
 
 /// One component on one side.
@@ -126,7 +133,7 @@ struct Request {
 
 impl Request {
     fn key(&self) -> ([u64; 3], Axis, u32) {
-        ([self.side.at, self.side.from, self.side.to].map(f64::to_bits), self.side.axis, self.component)
+        (self.side.key(), self.side.axis, self.component)
     }
 }
 
@@ -138,7 +145,7 @@ struct Stretch {
 
 impl<'a> Isolator<'a> {
     pub fn new(fields: &'a Fields) -> Self {
-        Self { fields, evaluations: 0, known: HashMap::new() }
+        Self { fields, evaluations: 0, known: HashMap::new(), flat: HashSet::new() }
     }
 
     fn evaluate(&mut self, queries: &[(Function, [Interval; 2])]) -> Vec<Sample> {
@@ -169,6 +176,11 @@ impl<'a> Isolator<'a> {
         merged.collect()
     }
 
+    /// Whether a curve is known to run along a side.
+    pub fn is_flat(&self, side: &Side) -> bool {
+        self.flat.contains(&side.key())
+    }
+
     /// The roots of each request; `None` where they are not all proved simple.
     fn isolate(&mut self, requests: &[Request]) -> Vec<Option<Vec<Crossing>>> {
         let function = |request: u32| self.fields.components[requests[request as usize].component as usize].function;
@@ -189,6 +201,10 @@ impl<'a> Isolator<'a> {
             for (stretch, sample) in open.into_iter().zip(samples) {
                 let request = stretch.request as usize;
                 let slope = sample.slope[requests[request].side.along()];
+                if sample.value == Interval::ZERO && !stretch.range.is_singleton() {
+                    self.flat.insert(requests[request].side.key());
+                    failed[request] = true;
+                }
                 if sample.is_refuted() || failed[request] {
                 } else if sample.is_continuous() && !contains_zero(slope) {
                     monotone.push((stretch, slope.lo() > 0.0));

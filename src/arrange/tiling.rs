@@ -110,6 +110,13 @@ impl Tiling {
             if failed.is_empty() {
                 return Self { leaves, sides, crossings, joints, rings };
             }
+            // Along a curve that is hard to tell from a side the number of leaves would double with each pass.
+            let hopeless = failed.len() > subdivision.region;
+            for &index in &failed {
+                let flat = |&(side, _): &(u32, bool)| isolator.is_flat(&sides[side as usize]);
+                leaves[index].open |= hopeless || rings[index].iter().any(flat);
+            }
+            failed.retain(|&index| !leaves[index].open);
             leaves = quarter(subdivision, leaves, &failed, control);
         }
     }

@@ -36,6 +36,7 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostic::code;
 use crate::interpret::Interpreter;
 use crate::interval::Interval;
+use crate::program::scene::Scene;
 use crate::session;
 use crate::session::Override;
 
@@ -76,30 +77,39 @@ fn work(arguments: &ArrangeArguments) -> Result<(), Failure> {
         tolerance: arguments.tolerance,
         ..arrange::Options::default()
     };
-    let (arrangement, stopped) = files::interruptible(|cancel| {
-        watched(|progress| {
+    let (done, stopped) = files::interruptible(|cancel| {
+        let arranged = watched(|progress| {
             arrange::arrange(&scene, &options, session::backend(), &Control::new(Some(progress), Some(cancel)))
-        })
+        });
+        deliver(arguments, &scene, &options, &arranged.map_err(fail)?)
     });
-    let arrangement = arrangement.map_err(fail)?;
-    let counts = check::check(&arrangement).map_err(|fault| fail(fault.into()))?;
-    let summary = Summary::new(&arrangement, &counts);
+    done?;
+    if stopped {
+        files::leave_interrupted("stopped: what was still open is in clusters");
+    }
+    Ok(())
+}
+
+/// Prints the counts and writes the files.
+fn deliver(
+    arguments: &ArrangeArguments,
+    scene: &Scene,
+    options: &arrange::Options,
+    arrangement: &Arrangement,
+) -> Result<(), Failure> {
+    let summary = Summary::new(arrangement, &check::check(arrangement).map_err(Diagnostic::from)?);
     if !arguments.outputs.is_empty() {
-        let fields = Fields::new(&scene, session::backend()).map_err(fail)?;
-        write(arguments, &arrangement, &summary, &fields)?;
+        write(arguments, arrangement, &summary, &Fields::new(scene, session::backend())?)?;
     }
     if let Some(path) = &arguments.certificate {
-        let certificate = Certificate::new(&scene, &options, &arrangement, &Interpreter).map_err(fail)?;
+        let certificate = Certificate::new(scene, options, arrangement, &Interpreter)?;
         files::write(path, &certificate.to_bytes())?;
     }
     if arguments.json {
         // Numbers and fixed names always have a JSON form.
         files::print((serde_json::to_string(&summary).unwrap_or_default() + "\n").as_bytes())?;
     } else {
-        files::print(table(&arguments.file, &arrangement, &summary).as_bytes())?;
-    }
-    if stopped {
-        files::leave_interrupted("stopped: what was still open is in clusters");
+        files::print(table(&arguments.file, arrangement, &summary).as_bytes())?;
     }
     Ok(())
 }

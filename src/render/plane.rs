@@ -38,6 +38,7 @@ use crate::render::picture::Picture;
 use crate::render::plan::Plan;
 use crate::render::plan::arithmetic;
 use crate::render::plane::block::BLOCK;
+use crate::render::plane::block::Decided;
 use crate::render::plane::block::Decider;
 use crate::render::plane::kernels::Kernels;
 use crate::render::plane::raster::Raster;
@@ -140,7 +141,7 @@ impl Plane {
         for (kernels, shape) in self.kernels.iter().zip(&self.scene.shapes) {
             let (program, bound) = (kernels.region.bind(parameters, &[]), kernels.systems.bind(parameters));
             let solid = shape.kind == ShapeKind::Region;
-            let decided: Vec<Option<(Vec<Place>, (u64, u64))>> = corners
+            let decided: Vec<Option<Decided>> = corners
                 .par_iter()
                 .map(|&(x, y)| {
                     let decided = (!control.is_cancelled()).then(|| {

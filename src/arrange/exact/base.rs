@@ -1,9 +1,8 @@
 //! Common factors: square-free polynomials, pairwise coprime, that make up given ones.
 
-use std::mem;
-
 use crate::arrange::exact::polynomial::Polynomial;
 use crate::arrange::exact::subresultant;
+use crate::arrange::exact::subresultant::Shadow;
 use crate::arrange::exact::univariate::Univariate;
 
 /// A square-free factor, and which of the given polynomials it divides, how often.
@@ -13,18 +12,16 @@ pub type Factor = (Polynomial, Vec<(usize, u32)>);
 /// constant. Factors in x alone or in y alone are apart from the others. They need not be irreducible. Zero polynomials have
 /// no factors. A greatest common divisor that is out of reach leaves two factors as they are; `false` says so.
 pub fn coprime_base(polys: &[Polynomial]) -> (Vec<Factor>, bool) {
-    let mut bases = [Vec::new(), Vec::new(), Vec::new()];
+    let mut bases = [X, Y, BOTH].map(|class| Base { class, ..Base::default() });
     let mut complete = true;
     for (index, poly) in polys.iter().enumerate().filter(|(_, poly)| !poly.is_zero()) {
         for (class, part) in parts(poly).into_iter().enumerate() {
             for (factor, multiplicity) in square_free(&part, class, &mut complete) {
-                insert(&mut bases[class], factor, index, multiplicity, class, &mut complete);
+                bases[class].insert(factor, (index, multiplicity), &mut complete);
             }
         }
     }
-    let [x, y, both] = bases;
-    let factors = x.into_iter().chain(y).chain(both);
-    let factors = factors.map(|(factor, mut uses): Factor| {
+    let factors = bases.into_iter().flat_map(|base| base.factors).map(|(factor, mut uses)| {
         uses.sort_unstable();
         (factor.primitive(), uses)
     });
@@ -34,6 +31,7 @@ pub fn coprime_base(polys: &[Polynomial]) -> (Vec<Factor>, bool) {
 /// The classes of factors, in the order of [`parts`].
 const X: usize = 0;
 const Y: usize = 1;
+const BOTH: usize = 2;
 
 /// The factor in x alone, that in y alone, and the rest, all primitive.
 fn parts(poly: &Polynomial) -> [Polynomial; 3] {
@@ -102,32 +100,53 @@ fn radical(poly: &Polynomial, complete: &mut bool) -> Polynomial {
     // The derivative may have a content in x; common divisors do not.
     let content = Polynomial::new(vec![derivative.content_x()]);
     let derivative = derivative.divide(&content).unwrap_or(derivative);
-    let repeated = common(poly, &derivative, X + Y + 1, complete);
+    let repeated = common(poly, &derivative, BOTH, complete);
     repeated.and_then(|repeated| poly.divide(&repeated)).unwrap_or_else(|| poly.clone())
 }
 
-/// Takes a square-free factor of polynomial `index` into a base.
-fn insert(base: &mut Vec<Factor>, factor: Polynomial, index: usize, times: u32, class: usize, complete: &mut bool) {
-    let mut rest = factor;
-    for i in 0..base.len() {
-        if rest.is_constant() {
-            return;
-        }
-        let shared = if rest == base[i].0 { Some(rest.clone()) } else { common(&base[i].0, &rest, class, complete) };
-        let Some(shared) = shared else { continue };
-        let (Some(left), Some(right)) = (base[i].0.divide(&shared), rest.divide(&shared)) else { continue };
-        let mut uses = base[i].1.clone();
-        add_use(&mut uses, index, times);
-        if left.is_constant() {
-            base[i].1 = uses;
-        } else {
-            let old = mem::replace(&mut base[i], (shared, uses)).1;
-            base.push((left, old));
-        }
-        rest = right;
+/// The factors of one class.
+#[derive(Default)]
+struct Base {
+    class: usize,
+    factors: Vec<Factor>,
+    shadows: Vec<Shadow>,
+}
+
+impl Base {
+    fn push(&mut self, poly: Polynomial, uses: Vec<(usize, u32)>) {
+        self.shadows.push(Shadow::new(&poly));
+        self.factors.push((poly, uses));
     }
-    if !rest.is_constant() {
-        base.push((rest.primitive(), vec![(index, times)]));
+
+    /// Takes a square-free factor in, with the index of its polynomial and its multiplicity there.
+    fn insert(&mut self, factor: Polynomial, (index, times): (usize, u32), complete: &mut bool) {
+        let mut rest = factor;
+        let mut shadow = Shadow::new(&rest);
+        for i in 0..self.factors.len() {
+            if rest.is_constant() {
+                return;
+            }
+            if self.class == BOTH && shadow.is_coprime(&self.shadows[i]) {
+                continue;
+            }
+            let base = &self.factors[i].0;
+            let shared = if rest == *base { Some(rest.clone()) } else { common(base, &rest, self.class, complete) };
+            let Some(shared) = shared else { continue };
+            let (Some(left), Some(right)) = (base.divide(&shared), rest.divide(&shared)) else { continue };
+            let old = self.factors[i].1.clone();
+            let mut uses = old.clone();
+            add_use(&mut uses, index, times);
+            self.shadows[i] = Shadow::new(&shared);
+            self.factors[i] = (shared, uses);
+            if !left.is_constant() {
+                self.push(left.primitive(), old);
+            }
+            rest = right;
+            shadow = Shadow::new(&rest);
+        }
+        if !rest.is_constant() {
+            self.push(rest.primitive(), vec![(index, times)]);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Curves over one algebraic number: the polynomials in y that remain at a root of a polynomial in x.
 
 use std::cmp::Ordering;
+use std::collections::HashMap;
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -20,6 +21,9 @@ use crate::arrange::exact::univariate::Univariate;
 /// Enclosures are not refined beyond this.
 const MAX_BITS: u64 = 8192;
 
+/// Field operations in one subresultant: about a quarter of a second.
+const MAX_WORK: u64 = 50_000_000;
+
 /// A vertical line x = a, where a is a root of a polynomial. Zero tests split that polynomial where they can (dynamic
 /// evaluation, Della Dora, Dicrescenzo, Duval 1985), so that it becomes simpler with use.
 #[derive(Debug, Clone)]
@@ -28,12 +32,14 @@ pub struct Fibre {
     modulus: Univariate,
     /// Has no other root of the polynomial in it, nor at its ends.
     place: Place,
+    /// Common divisors found so far.
+    known: HashMap<(Polynomial, Polynomial), Polynomial>,
 }
 
 impl Fibre {
     /// The line at the root of a square-free polynomial in this place.
     pub fn new(modulus: &Univariate, place: Place) -> Self {
-        let mut fibre = Self { modulus: modulus.primitive(), place };
+        let mut fibre = Self { modulus: modulus.primitive(), place, known: HashMap::new() };
         let is_root = |x: &BigRational| modulus.sign_at(x) == Ordering::Equal;
         while !fibre.place.is_exact() && (is_root(&fibre.place.lo) || is_root(&fibre.place.hi)) {
             fibre.place.bisect(modulus);
@@ -88,7 +94,7 @@ impl Fibre {
         let vanishes = common.sign_at(&self.place.lo) != common.sign_at(&self.place.hi);
         let part = if vanishes { Some(common) } else { self.modulus.divide(&common) };
         if let Some(part) = part {
-            *self = Self { modulus: part, place: self.place.clone() };
+            self.modulus = part;
         }
         vanishes
     }
@@ -97,12 +103,20 @@ impl Fibre {
     pub fn reduce(&mut self, poly: &Polynomial) -> Polynomial {
         let mut reduced = match self.rational() {
             Some(x) => constant_rows(&poly.at_x(x)),
-            None => poly.reduce(&self.modulus),
+            None => self.shortened(poly),
         };
         while !reduced.is_zero() && self.is_zero(&reduced.leading()) {
             reduced = reduced.reductum();
         }
         reduced
+    }
+
+    /// A polynomial with the same values up to a positive factor: of lower degree in x, unless its coefficients would grow
+    /// more than that is worth.
+    fn shortened(&self, poly: &Polynomial) -> Polynomial {
+        let steps = (poly.degree_x() + 1).saturating_sub(self.modulus.degree()) as u64;
+        let growth = steps * self.modulus.bits();
+        if steps == 0 || growth > poly.bits() + 64 { poly.clone() } else { poly.reduce(&self.modulus) }
     }
 
     /// The greatest common divisor of two polynomials that do not vanish identically here.
@@ -114,9 +128,9 @@ impl Fibre {
         // The first subresultant whose leading coefficient does not vanish (Basu, Pollack, Roy, "Algorithms in real
         // algebraic geometry", 2006, proposition 4.25 and theorem 8.56).
         for k in 0..n.min(m) {
-            let candidate = subresultant::subresultant(f, g, k)?;
+            let candidate = subresultant::subresultant(f, g, k, MAX_WORK)?;
             if candidate.degree_y() == k && !candidate.is_zero() && !self.is_zero(&candidate.leading()) {
-                return Ok(candidate.reduce(&self.modulus));
+                return Ok(self.shortened(&candidate));
             }
         }
         Ok(if n <= m { f.clone() } else { g.clone() })
@@ -124,6 +138,16 @@ impl Fibre {
 
     /// The polynomial whose roots in an open interval are the common roots there.
     pub fn common(&mut self, f: &Polynomial, g: &Polynomial) -> Result<Polynomial, TooLarge> {
+        let key = (f.clone(), g.clone());
+        if let Some(known) = self.known.get(&key) {
+            return Ok(known.clone());
+        }
+        let common = self.find_common(f, g)?;
+        self.known.insert(key, common.clone());
+        Ok(common)
+    }
+
+    fn find_common(&mut self, f: &Polynomial, g: &Polynomial) -> Result<Polynomial, TooLarge> {
         let (f, g) = (self.reduce(f), self.reduce(g));
         if f.is_zero() {
             return Ok(g);

@@ -126,6 +126,26 @@ impl Field {
         a
     }
 
+    /// Whether two polynomials, whose leading coefficients are not 0, have no common root; without inverses.
+    pub fn is_coprime(self, a: &[u64], b: &[u64]) -> bool {
+        let (mut a, mut b) = (a.to_vec(), b.to_vec());
+        while !b.is_empty() {
+            let m = b.len() - 1;
+            let lead = b[m];
+            while a.len() > m {
+                let Some(top) = a.pop() else { break };
+                let offset = a.len() - m;
+                a.iter_mut().for_each(|c| *c = self.mul(*c, lead));
+                for (x, &y) in a[offset..].iter_mut().zip(&b[..m]) {
+                    *x = self.sub(*x, self.mul(top, y));
+                }
+                trim(&mut a);
+            }
+            (a, b) = (b, a);
+        }
+        a.len() == 1
+    }
+
     /// The k-th subresultant of polynomials of degrees above `k`, the determinant polynomial of the rows y^i f (i < deg g - k)
     /// over the rows y^i g (i < deg f - k); `None` if its degree is below k.
     ///

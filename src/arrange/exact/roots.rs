@@ -105,14 +105,17 @@ impl Place {
     pub fn tighten(&mut self, poly: &Univariate) {
         // Each round gains 50 bits or more; floating-point numbers go down to 2^-1074.
         for _ in 0..32 {
-            let enclosure = self.enclosure();
-            if self.is_exact() || enclosure.lo().next_up().next_up() >= enclosure.hi() {
+            if self.is_exact() {
                 return;
             }
             // A root with a small denominator, 0 above all, is found as such.
             let simple = simplest_between(&self.lo, &self.hi);
             if poly.sign_at(&simple) == Ordering::Equal {
                 (self.lo, self.hi) = (simple.clone(), simple);
+                return;
+            }
+            let enclosure = self.enclosure();
+            if enclosure.lo().next_up().next_up() >= enclosure.hi() {
                 return;
             }
             let magnitude = self.lo.abs().max(self.hi.abs());

@@ -6,7 +6,7 @@ use crate::arrange::exact::polynomial::Polynomial;
 use crate::arrange::exact::univariate::Images;
 use crate::arrange::exact::univariate::Univariate;
 
-/// More field operations than this are not tried in one subresultant: about a second.
+/// More field operations than this are not tried in one resultant: about a second. Resultants are kept for other questions.
 const MAX_WORK: u64 = 250_000_000;
 
 /// A computation would take too long.
@@ -17,8 +17,8 @@ pub struct TooLarge;
 /// coefficient of y^k vanishes identically. For `k = 0` the resultant.
 ///
 /// # Errors
-/// If degrees or coefficients are too large.
-pub fn subresultant(f: &Polynomial, g: &Polynomial, k: usize) -> Result<Polynomial, TooLarge> {
+/// If it would take more than `limit` field operations.
+pub fn subresultant(f: &Polynomial, g: &Polynomial, k: usize, limit: u64) -> Result<Polynomial, TooLarge> {
     let (n, m) = (f.degree_y(), g.degree_y());
     debug_assert!(k < n.min(m), "a subresultant of full degree");
     let degree = degree_bound(f, g, k);
@@ -26,7 +26,7 @@ pub fn subresultant(f: &Polynomial, g: &Polynomial, k: usize) -> Result<Polynomi
     let bits = (m - k) as u64 * f.norm().bits() + (n - k) as u64 * g.norm().bits() + 1;
     let per_point = ((f.degree_x() + 1) * (n + 1) + (g.degree_x() + 1) * (m + 1) + n * m + 128 * n.min(m)) as u64;
     let per_prime = (degree as u64 + 1) * (per_point + 3 * (k as u64 + 1) * (degree as u64 + 1));
-    if (bits / 61 + 1).saturating_mul(per_prime) > MAX_WORK {
+    if (bits / 61 + 1).saturating_mul(per_prime) > limit {
         return Err(TooLarge);
     }
     let mut images = Images::new((k + 1) * (degree + 1));
@@ -59,7 +59,7 @@ pub fn resultant(f: &Polynomial, g: &Polynomial) -> Result<Univariate, TooLarge>
     match (f.degree_y(), g.degree_y()) {
         (0, m) => Ok(power(f.leading(), m)),
         (n, 0) => Ok(power(g.leading(), n)),
-        _ => Ok(subresultant(f, g, 0)?.leading()),
+        _ => Ok(subresultant(f, g, 0, MAX_WORK)?.leading()),
     }
 }
 
@@ -116,30 +116,43 @@ fn image(f: &Polynomial, g: &Polynomial, k: usize, degree: usize, field: Field) 
     Image::Rows(values.iter().flat_map(|values| field.interpolate(&points, values)).collect())
 }
 
+/// A polynomial on one vertical line modulo a prime, the same for all: two that have coprime images are coprime.
+#[derive(Debug, Clone)]
+pub struct Shadow(Vec<u64>);
+
+impl Shadow {
+    pub fn new(poly: &Polynomial) -> Self {
+        let field = modular::field(0);
+        Self(Polynomial::image(&poly.modulo(field), field, field.element(SHADOW_AT)))
+    }
+
+    /// Whether the polynomials, without content in x alone, are proved coprime.
+    pub fn is_coprime(&self, other: &Self) -> bool {
+        // If a leading coefficient of both vanishes, a common factor may have gone with them.
+        let lost = self.0.last() == Some(&0) || other.0.last() == Some(&0);
+        !lost && modular::field(0).is_coprime(&self.0, &other.0)
+    }
+}
+
+/// Some place in x.
+const SHADOW_AT: u64 = 0x1e37_79b9_7f4a_7c15;
+
 /// The greatest common divisor of two polynomials without content in x alone, each of positive degree in y; `None` if it is
-/// a constant, which is proved by one image where it can be.
+/// a constant.
 ///
 /// # Errors
 /// If degrees or coefficients are too large.
 pub fn gcd(f: &Polynomial, g: &Polynomial) -> Result<Option<Polynomial>, TooLarge> {
-    // The degree in y of a common divisor is at most that of the images.
+    // The degree in y of a common divisor is at most that of images.
+    let field = modular::field(0);
+    let (a, b) = (Shadow::new(f).0, Shadow::new(g).0);
     let mut least = f.degree_y().min(g.degree_y());
-    for index in 0..2 {
-        let field = modular::field(index);
-        let (a, b) = (f.modulo(field), g.modulo(field));
-        let x = field.element(0x9e37_79b9_7f4a_7c15 >> (2 + index));
-        let (a, b) = (Polynomial::image(&a, field, x), Polynomial::image(&b, field, x));
-        if a.last() == Some(&0) || b.last() == Some(&0) {
-            continue;
-        }
+    if a.last() != Some(&0) && b.last() != Some(&0) {
         least = least.min(field.gcd(&a, &b).len() - 1);
-        if least == 0 {
-            return Ok(None);
-        }
     }
     let smaller = if f.degree_y() <= g.degree_y() { f } else { g };
     for k in (1..=least).rev() {
-        let candidate = if k == smaller.degree_y() { smaller.clone() } else { subresultant(f, g, k)? };
+        let candidate = if k == smaller.degree_y() { smaller.clone() } else { subresultant(f, g, k, MAX_WORK)? };
         if candidate.is_zero() {
             continue;
         }
@@ -191,7 +204,7 @@ mod tests {
     fn a_subresultant_that_vanishes_is_zero() {
         let a = Polynomial::from_terms(&[(1, 0, 2), (1, 1, 0)]);
         let b = Polynomial::from_terms(&[(1, 0, 3), (2, 1, 1), (5, 0, 0)]);
-        assert_eq!(subresultant(&a.mul(&b), &a.mul(&a), 0), Ok(Polynomial::default()));
-        assert_eq!(subresultant(&a.mul(&b), &a.mul(&a), 1), Ok(Polynomial::default()));
+        assert_eq!(subresultant(&a.mul(&b), &a.mul(&a), 0, MAX_WORK), Ok(Polynomial::default()));
+        assert_eq!(subresultant(&a.mul(&b), &a.mul(&a), 1, MAX_WORK), Ok(Polynomial::default()));
     }
 }

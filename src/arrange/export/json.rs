@@ -78,7 +78,7 @@ struct Edge<'a> {
     kind: EdgeKind,
     curves: &'a [u16],
     proved: bool,
-    /// One box for each node and each cell that the edge passes, in order.
+    /// One box around each cell that the edge passes, in order.
     boxes: Vec<[Range; 2]>,
     line: Vec<[Number; 2]>,
 }
@@ -93,6 +93,11 @@ struct Face<'a> {
     sample: Option<[Number; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     area: Option<Range>,
+}
+
+/// The smallest box around boxes: a cluster has many, and many edges.
+fn hull(boxes: &[[Interval; 2]]) -> [Interval; 2] {
+    boxes.iter().fold([Interval::EMPTY; 2], |hull, area| [hull[0].hull(area[0]), hull[1].hull(area[1])])
 }
 
 /// The structure as one JSON object.
@@ -124,8 +129,7 @@ pub fn json(traced: Traced<'_>) -> Result<String, Diagnostic> {
         boxes: edge
             .cells
             .iter()
-            .flat_map(|&cell| &arrangement.complex.cells[cell as usize].boxes)
-            .map(|area| area.map(range))
+            .map(|&cell| hull(&arrangement.complex.cells[cell as usize].boxes).map(range))
             .collect(),
         line: line.iter().map(|point| point.map(Number)).collect(),
     });

@@ -1,8 +1,8 @@
 //! The geometry of an arrangement's edges and faces: polylines with a proved distance, splines, lengths and areas.
 //!
-//! In each cell that an edge passes it is a graph over x or over y, proved by a derivative without a zero. [`arc`] has what
-//! bounds on the slope say of such a stretch; [`refine`] cuts stretches until that is enough, many at once; [`trace`] has
-//! the first ones; [`area`] follows the cycles of faces; [`spline`] fits Bezier curves.
+//! In each cell that an edge passes it is a graph over x or over y, proved by a derivative without a zero. `arc` has what
+//! bounds on the slope say of such a stretch; `refine` cuts stretches until that is enough, many at once; `trace` has
+//! the first ones; `area` follows the cycles of faces; [`spline`] fits Bezier curves.
 
 mod arc;
 mod area;

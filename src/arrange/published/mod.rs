@@ -8,7 +8,7 @@
 //!
 //! Ours: a change of sign counts only inside a part where the function is proved continuous, since a pole changes sign
 //! without a zero; the source does not say how small the parts of that proof may get, here they are at most
-//! [`proof::LEVELS`] quarterings below the box and at most [`proof::OPEN`] undecided ones at a time; the regions of no curve
+//! `proof::LEVELS` quarterings below the box and at most `proof::OPEN` undecided ones at a time; the regions of no curve
 //! are given, as the faces; regions of one curve in which no crossing is proved are kept apart; a bound on the
 //! tree's size. Conditions of curves are not looked at: the source has none.
 //!
@@ -47,7 +47,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Parts of a box in proofs may lie [`proof::LEVELS`] deeper, where the number format has hardly any places left.
+    /// Parts of a box in proofs may lie `proof::LEVELS` deeper, where the number format has hardly any places left.
     pub const DEEPEST: u32 = 40;
 }
 

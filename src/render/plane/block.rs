@@ -67,6 +67,9 @@ impl Known {
     }
 }
 
+/// The places of a block's pixels, and how often its blocks and single pixels were evaluated.
+pub type Decided = (Vec<Place>, (u64, u64));
+
 /// Decides the pixels of one block.
 pub struct Decider<'a> {
     raster: &'a Raster,

@@ -226,7 +226,9 @@ fn round(evaluator: &mut Evaluator, solid: bool, pixels: &mut [Pixel], patches: 
 
 /// The sign that an enclosure proves: verdict bits, 0 for none.
 pub fn sign(value: Interval) -> u32 {
-    if value.lo() > 0.0 {
+    if value.is_empty() {
+        0
+    } else if value.lo() > 0.0 {
         verdict::POSITIVE
     } else if value.hi() < 0.0 {
         verdict::NEGATIVE

@@ -21,7 +21,8 @@ pub fn centred(on_box: &Estimate, at_centre: &Estimate, step: [Interval; 2]) -> 
 /// Looks for common zeros of two functions; `step` is the box less its centre.
 pub fn solve(on_box: [&Estimate; 2], at_centre: [&Estimate; 2], step: [Interval; 2]) -> Solutions {
     let slopes = on_box.map(|estimate| estimate.slope);
-    if slopes.as_flattened().iter().any(|slope| !slope.is_bounded()) {
+    let known = at_centre.iter().all(|estimate| !estimate.value.is_empty());
+    if !known || slopes.as_flattened().iter().any(|slope| !slope.is_bounded()) {
         return Solutions::Unknown;
     }
     let middle = slopes.map(|row| row.map(Interval::mid));
