@@ -15,7 +15,7 @@ import tempfile
 import scenes
 
 RUNS = 5
-# The source's: below about 1e-8 of the box, double points drown in rounding.
+# The source's own.
 EPSILON = "1e-6"
 PATIENCE = 60
 NAMES = [
