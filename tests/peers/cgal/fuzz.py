@@ -20,7 +20,9 @@ def polynomial(rng, degree, size):
         for j in range(degree + 1 - i)
         if rng.random() < 0.7
     ]
-    return "(" + " + ".join(terms or ["x"]) + ")"
+    if not any("x" in term or "y" in term for term in terms):
+        terms.append("x")
+    return "(" + " + ".join(terms) + ")"
 
 
 def curve(rng):
