@@ -22,7 +22,10 @@ pub enum Settled {
     Done(Outcome),
     /// Smaller boxes may tell more: several points are in question.
     Refine,
-    Open(Outcome),
+    /// One point is proved, but arms leave the cluster and come back: with these leaves it takes in their turns.
+    Absorb(Vec<usize>),
+    /// It has nothing to say.
+    Open,
 }
 
 /// Settles a cluster, if it can be.
@@ -38,24 +41,38 @@ pub fn settle(fields: &Fields, tiling: &Tiling, cluster: &Cluster) -> Settled {
     let touches_frame = cluster.boundary.iter().flatten().any(|&(side, _)| tiling.sides[side as usize].is_frame());
     let ready = cluster.boundary.len() == 1 && !touches_frame && unconditional(fields, cluster);
     let Some(polynomials) = known.filter(|_| ready) else {
-        return Settled::Open(unresolved(fields, tiling, cluster));
+        return Settled::Open;
     };
     let count = |position: usize| nodes.iter().filter(|&&node| node == cluster.components[position]).count();
-    match fields.algebra.settle(&polynomials, cluster.area) {
+    let finding = fields.algebra.settle(&polynomials, cluster.area);
+    if std::env::var("DBG").is_ok() { eprintln!("{:?} nodes {} leaves {} -> {:?}", cluster.area, nodes.len(), cluster.leaves.len(), finding); }
+    match finding {
         Finding::Nothing(_) if nodes.is_empty() => Settled::Done(Outcome::Regular),
         Finding::Star(star) => {
             let fits = (0..polynomials.len()).all(|position| count(position) == star.branches[position].arms as usize);
-            match fits {
-                true => Settled::Done(outcome(fields, cluster, &star)),
-                false => Settled::Refine,
+            if fits {
+                return Settled::Done(outcome(fields, cluster, &star));
             }
+            let around = absorbed(tiling, cluster, star.within);
+            if around.is_empty() { Settled::Refine } else { Settled::Absorb(around) }
         }
         Finding::Arcs(arcs) if nodes.len() == 2 && arcs.counts.iter().sum::<u32>() == 1 => {
             Settled::Done(Outcome::Regular)
         }
         Finding::Arcs(_) | Finding::Several(_) | Finding::Nothing(_) => Settled::Refine,
-        Finding::Unknown(_) => Settled::Open(unresolved(fields, tiling, cluster)),
+        Finding::Unknown(_) => Settled::Open,
     }
+}
+
+/// The settled leaves over the smallest box around a cluster, as far as they lie in a box of which everything is known.
+fn absorbed(tiling: &Tiling, cluster: &Cluster, within: [Interval; 2]) -> Vec<usize> {
+    let over = |area: [Interval; 2]| {
+        (0..2).all(|axis| {
+            let (own, hull) = (area[axis], cluster.area[axis]);
+            own.lo() < hull.hi() && own.hi() > hull.lo() && own.subset(within[axis])
+        })
+    };
+    (0..tiling.leaves.len()).filter(|&leaf| !tiling.leaves[leaf].open && over(tiling.leaves[leaf].area)).collect()
 }
 
 /// Whether every use of the cluster's components holds on all of it.

@@ -114,7 +114,9 @@ impl Tiling {
             let hopeless = failed.len() > subdivision.region;
             for &index in &failed {
                 let flat = |&(side, _): &(u32, bool)| isolator.is_flat(&sides[side as usize]);
-                leaves[index].open |= hopeless || rings[index].iter().any(flat);
+                let stays = hopeless || rings[index].iter().any(flat);
+                leaves[index].open |= stays;
+                leaves[index].hopeless |= stays;
             }
             failed.retain(|&index| !leaves[index].open);
             leaves = quarter(subdivision, leaves, &failed, control);
