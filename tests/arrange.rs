@@ -6,6 +6,8 @@ mod cases;
 mod figures;
 #[path = "arrange/formulas.rs"]
 mod formulas;
+#[path = "arrange/named.rs"]
+mod named;
 
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -40,7 +42,7 @@ fn tried() -> impl Iterator<Item = &'static Case> {
 }
 
 fn all() -> impl Iterator<Item = &'static Case> {
-    let tables = [cases::CIRCLES, cases::SINGULAR, cases::NAMED, cases::REPEATED, cases::FRAMED, formulas::FORMULAS];
+    let tables = [cases::CIRCLES, cases::SINGULAR, named::NAMED, cases::REPEATED, cases::FRAMED, formulas::FORMULAS];
     tables.into_iter().flatten()
 }
 

@@ -15,9 +15,11 @@ from sympy.parsing.sympy_parser import (
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "arrange"
 X, Y = sympy.symbols("x y")
 RULES = standard_transformations + (convert_xor, rationalize, implicit_multiplication)
-CASE = re.compile(
-    r'^    case\("([^"]*)", "([^"]*)", (?:"[^"]*"|\w+), \[(\d+), (\d+), (\d+), (\d+)\], &\[([^\]]*)\]\)', re.M
+TABLE = (
+    r'case\(\s*"([^"]*)",\s*"([^"]*)",\s*(?:"[^"]*"|\w+),'
+    r"\s*\[(\d+), (\d+), (\d+), (\d+)\],\s*&\[([^\]]*)\],?\s*\)"
 )
+CASE = re.compile(TABLE)
 
 
 def cases():
