@@ -35,7 +35,7 @@ pub fn join(leaf: &Leaf, places: &[Place<'_>]) -> Option<Vec<Joint>> {
         let mut own: Vec<usize> = (0..places.len()).filter(|&p| places[p].component == active.component).collect();
         own.sort_by(|&a, &b| places[a].point[along].lo().total_cmp(&places[b].point[along].lo()));
         let apart = own.windows(2).all(|w| places[w[0]].point[along].hi() < places[w[1]].point[along].lo());
-        if own.len() % 2 != 0 || !apart {
+        if !own.len().is_multiple_of(2) || !apart {
             return None;
         }
         arcs.extend(own.chunks(2).map(|ends| ([ends[0].min(ends[1]), ends[0].max(ends[1])], index as u8)));

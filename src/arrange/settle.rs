@@ -4,6 +4,9 @@
 //! cluster's boundary carries as many nodes of each component as the star has arms of it, each arm leaves once and nothing
 //! else passes: the cluster is a star too.
 
+use std::collections::HashMap;
+use std::collections::HashSet;
+
 use crate::arrange::assemble::Outcome;
 use crate::arrange::assemble::users;
 use crate::arrange::cluster::Cluster;
@@ -22,7 +25,10 @@ pub enum Settled {
     Done(Outcome),
     /// Smaller boxes may tell more: several points are in question.
     Refine,
-    Open(Outcome),
+    /// One point is proved, but arms leave the cluster and come back: with these leaves it takes in their turns.
+    Absorb(Vec<usize>),
+    /// It has nothing to say.
+    Open,
 }
 
 /// Settles a cluster, if it can be.
@@ -36,26 +42,101 @@ pub fn settle(fields: &Fields, tiling: &Tiling, cluster: &Cluster) -> Settled {
     let known: Option<Vec<usize>> =
         cluster.components.iter().map(|&component| fields.polynomials[component as usize]).collect();
     let touches_frame = cluster.boundary.iter().flatten().any(|&(side, _)| tiling.sides[side as usize].is_frame());
-    let ready = cluster.boundary.len() == 1 && !touches_frame && unconditional(fields, cluster);
+    let ready = !touches_frame && unconditional(fields, cluster);
     let Some(polynomials) = known.filter(|_| ready) else {
-        return Settled::Open(unresolved(fields, tiling, cluster));
+        return Settled::Open;
     };
     let count = |position: usize| nodes.iter().filter(|&&node| node == cluster.components[position]).count();
-    match fields.algebra.settle(&polynomials, cluster.area) {
+    let finding = fields.algebra.settle(&polynomials, cluster.area);
+    if cluster.boundary.len() > 1 {
+        // What lies in a hole lies in the box of which everything is known.
+        return match finding {
+            Finding::Several(_) | Finding::Unknown(_) => Settled::Refine,
+            Finding::Star(_) | Finding::Arcs(_) | Finding::Nothing(_) => Settled::Absorb(holes(tiling, cluster)),
+        };
+    }
+    match finding {
         Finding::Nothing(_) if nodes.is_empty() => Settled::Done(Outcome::Regular),
+        Finding::Arcs(_) if passes(&nodes) => Settled::Done(Outcome::Regular),
         Finding::Star(star) => {
-            let fits = (0..polynomials.len()).all(|position| count(position) == star.branches[position].arms as usize);
-            match fits {
-                true => Settled::Done(outcome(fields, cluster, &star)),
-                false => Settled::Refine,
+            let overlaps = |area: [Interval; 2]| (0..2).all(|axis| !area[axis].intersect(star.point[axis]).is_empty());
+            let near = (0..).zip(&tiling.leaves).filter(|(_, leaf)| overlaps(leaf.area)).map(|(leaf, _)| leaf);
+            let (own, other): (Vec<u32>, Vec<u32>) = near.partition(|leaf| cluster.leaves.contains(leaf));
+            if own.is_empty() && passes(&nodes) {
+                return Settled::Done(Outcome::Regular);
             }
-        }
-        Finding::Arcs(arcs) if nodes.len() == 2 && arcs.counts.iter().sum::<u32>() == 1 => {
-            Settled::Done(Outcome::Regular)
+            // The point may lie in a settled leaf beside the cluster.
+            if own.is_empty() || !other.is_empty() {
+                return Settled::Refine;
+            }
+            let fits = (0..polynomials.len()).all(|position| count(position) == star.branches[position].arms as usize);
+            if fits {
+                return Settled::Done(outcome(fields, cluster, &star));
+            }
+            let turns = detours(tiling, cluster, star.within);
+            if turns.is_empty() { Settled::Refine } else { Settled::Absorb(turns) }
         }
         Finding::Arcs(_) | Finding::Several(_) | Finding::Nothing(_) => Settled::Refine,
-        Finding::Unknown(_) => Settled::Open(unresolved(fields, tiling, cluster)),
+        Finding::Unknown(_) => Settled::Open,
     }
+}
+
+/// Whether a cluster without a vertex in it holds nothing, or a stretch of one arc: where every arc runs from side to side of
+/// a box around it, what enters the cluster leaves it again, and nothing in it is closed.
+fn passes(nodes: &[u32]) -> bool {
+    nodes.is_empty() || matches!(nodes, [one, other] if one == other)
+}
+
+/// The settled leaves through which curves leave a cluster and come back to it, inside a box of which everything is known.
+fn detours(tiling: &Tiling, cluster: &Cluster, within: [Interval; 2]) -> Vec<usize> {
+    let owns = |leaf: u32| cluster.leaves.binary_search(&leaf).is_ok();
+    let mut found = Vec::new();
+    for &(side, _) in cluster.boundary.iter().flatten() {
+        for position in 0..tiling.crossings[side as usize].as_ref().map_or(0, Vec::len) as u32 {
+            let mut path = Vec::new();
+            let (mut side, mut position) = (side, position);
+            let mut from = tiling.sides[side as usize].leaves.into_iter().flatten().find(|&leaf| owns(leaf));
+            let returned = loop {
+                let next = tiling.sides[side as usize].leaves.into_iter().flatten().find(|&leaf| Some(leaf) != from);
+                let Some(leaf) = next else { break false };
+                if owns(leaf) {
+                    break true;
+                }
+                let inside = (0..2).all(|axis| tiling.leaves[leaf as usize].area[axis].subset(within[axis]));
+                let Some(onward) = tiling.follow(leaf as usize, side, position).filter(|_| inside) else { break false };
+                path.push(leaf as usize);
+                (from, side, position) = (Some(leaf), onward.0, onward.1);
+            };
+            if returned {
+                found.extend(path);
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The leaves in the holes of a cluster.
+fn holes(tiling: &Tiling, cluster: &Cluster) -> Vec<usize> {
+    let mut neighbours: HashMap<u32, Vec<u32>> = HashMap::new();
+    for side in &tiling.sides {
+        if let [Some(a), Some(b)] = side.leaves {
+            neighbours.entry(a).or_default().push(b);
+            neighbours.entry(b).or_default().push(a);
+        }
+    }
+    let mut seen: HashSet<u32> = cluster.leaves.iter().copied().collect();
+    let mut found = Vec::new();
+    let rims = cluster.boundary[1..].iter().flatten();
+    let mut stack: Vec<u32> = rims.flat_map(|&(side, _)| tiling.sides[side as usize].leaves).flatten().collect();
+    while let Some(leaf) = stack.pop() {
+        if !cluster.leaves.contains(&leaf) && seen.insert(leaf) {
+            found.push(leaf as usize);
+            stack.extend(&neighbours[&leaf]);
+        }
+    }
+    found
 }
 
 /// Whether every use of the cluster's components holds on all of it.
@@ -82,10 +163,7 @@ fn outcome(fields: &Fields, cluster: &Cluster, star: &Star) -> Outcome {
         () if crosses => VertexKind::Crossing,
         () => VertexKind::Tangency,
     };
-    // The point lies in the cluster: outside, everything is settled.
-    let area = [0, 1].map(|axis| star.point[axis].intersect(cluster.area[axis]));
-    let area = if area.iter().any(|side: &Interval| side.is_empty()) { cluster.area } else { area };
-    Outcome::Vertex { kind, area, proved: true, note: None }
+    Outcome::Vertex { kind, area: star.point, proved: true, note: None }
 }
 
 /// A cluster of which nothing more is known.

@@ -20,7 +20,7 @@ const SPLIT: f64 = 0.487_215_309;
 const HALVINGS: usize = 60;
 
 /// Undecided stretches of one segment beyond which its roots are given up.
-const STRETCHES: usize = 256;
+const STRETCHES: usize = 24;
 
 /// Steps of Newton's method; it converges quadratically, bisection alone would take as many as a mantissa has bits.
 const STEPS: usize = 60;

@@ -32,10 +32,14 @@ use crate::program::scene::Scene;
 /// The side at which boxes stop being quartered, as a part of the domain's, unless it is given.
 const EPSILON: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// By how much smaller boxes may get where exact arithmetic finds several points in one cluster, each time it does.
-const FINER: f64 = 1.0 / 256.0;
+/// The side, as a part of the domain's, at which exact arithmetic is asked first. Around a cusp the boxes that hold both
+/// branches are the more the smaller they are.
+const COARSE: f64 = 1.0 / (1u64 << 13) as f64;
 
-/// How often it may say so.
+/// How much smaller boxes get from one round of questions to the next.
+const FINER: f64 = 1.0 / 64.0;
+
+/// Rounds beyond the side that was asked for, where exact arithmetic finds several points in one cluster.
 const ROUNDS: usize = 3;
 
 /// The arrangement of a scene's curves. A control that is set to stop leaves clusters where nothing was decided yet.
@@ -101,7 +105,8 @@ fn fault(fault: Fault) -> Diagnostic {
 pub fn solve(fields: &Fields, options: &Options, leaves: Option<&[[Interval; 2]]>, control: &Control<'_>) -> Complex {
     let given: HashSet<[u64; 4]> = leaves.into_iter().flatten().map(key).collect();
     let side = fields.domain[0].width().max(fields.domain[1].width());
-    let mut epsilon = options.epsilon.unwrap_or(EPSILON * side);
+    let last = options.epsilon.unwrap_or(EPSILON * side);
+    let mut epsilon = if options.exact { last.max(COARSE * side) } else { last };
     let stop = match leaves {
         Some(_) => Stop::At(&given),
         None => Stop::Epsilon(epsilon),
@@ -110,42 +115,52 @@ pub fn solve(fields: &Fields, options: &Options, leaves: Option<&[[Interval; 2]]
     let mut isolator = Isolator::new(fields);
     let first = subdivision.run(vec![Work::root(fields)], control);
     let mut tiling = Tiling::new(&mut subdivision, &mut isolator, first, control);
-    let mut exact = 0;
-    let mut round = 0;
+    let (mut exact, mut beyond) = (0, 0);
     loop {
-        round += 1;
         let clusters = clusters(&tiling.leaves, &tiling.sides);
         let mut outcomes: Vec<Outcome> = Vec::with_capacity(clusters.len());
-        let mut finer = Vec::new();
+        let (mut finer, mut absorbed) = (Vec::new(), Vec::new());
         let mut settled = 0;
         for cluster in &clusters {
+            let own = || cluster.leaves.iter().map(|&leaf| leaf as usize);
             let found = match options.exact && !control.is_cancelled() {
                 true => settle(fields, &tiling, cluster),
-                false => Settled::Refine,
+                false => Settled::Open,
             };
-            exact += 1;
+            exact += u64::from(!matches!(found, Settled::Open));
+            let hopeless = own().any(|leaf| tiling.leaves[leaf].hopeless);
             match found {
                 Settled::Done(outcome) => {
                     settled += 1;
                     outcomes.push(outcome);
+                    continue;
                 }
-                Settled::Open(outcome) => outcomes.push(outcome),
-                Settled::Refine => {
-                    finer.extend(cluster.leaves.iter().map(|&leaf| leaf as usize));
-                    outcomes.push(unresolved(fields, &tiling, cluster));
-                }
+                // Boxes of other curves are quartered as far as was asked; where exact arithmetic has a say, a little further.
+                Settled::Open | Settled::Refine if hopeless => {}
+                Settled::Open if epsilon <= last => {}
+                Settled::Open | Settled::Refine => finer.extend(own()),
+                Settled::Absorb(leaves) => absorbed.extend(leaves),
             }
+            outcomes.push(unresolved(fields, &tiling, cluster));
         }
-        let again = options.exact && !finer.is_empty() && round <= ROUNDS && !control.is_cancelled();
-        if !again {
+        let again = !finer.is_empty() && beyond < ROUNDS || !absorbed.is_empty();
+        if !again || control.is_cancelled() {
             let mut complex = assemble(fields, &tiling, &clusters, outcomes);
             complex.effort.boxes = subdivision.boxes;
             complex.effort.evaluations += subdivision.evaluations + isolator.evaluations;
             (complex.effort.exact, complex.effort.settled) = (exact, settled);
             return complex;
         }
+        for leaf in absorbed {
+            tiling.leaves[leaf].open = true;
+        }
         finer.sort_unstable();
-        epsilon *= FINER;
+        if epsilon > last {
+            epsilon = last.max(FINER * epsilon);
+        } else {
+            beyond += 1;
+            epsilon *= FINER;
+        }
         if let Stop::Epsilon(stop) = &mut subdivision.stop {
             *stop = epsilon;
         }

@@ -66,6 +66,8 @@ pub struct Leaf {
     pub crossing: Vec<(u8, u8)>,
     /// Whether the claims of a settled leaf could not be proved.
     pub open: bool,
+    /// Whether it is left open at whatever size it has: quartering did not get anywhere.
+    pub hopeless: bool,
 }
 
 /// When boxes stop being quartered.
@@ -153,7 +155,16 @@ impl Subdivision<'_> {
                     Some(quarters) => next.extend(quarters),
                     None => {
                         let Work { area, depth, grid, silent, .. } = work;
-                        leaves.push(Leaf { area, depth, grid, active, silent, crossing, open: !settled });
+                        leaves.push(Leaf {
+                            area,
+                            depth,
+                            grid,
+                            active,
+                            silent,
+                            crossing,
+                            open: !settled,
+                            hopeless: false,
+                        });
                     }
                 }
             }
@@ -213,7 +224,7 @@ impl Subdivision<'_> {
             let Work { area, depth, grid, candidates, silent } = work;
             let active = candidates.into_iter().map(|component| Active { component, axis: None, conditional: true });
             let (active, crossing) = (active.collect(), Vec::new());
-            leaves.push(Leaf { area, depth, grid, active, silent, crossing, open: true });
+            leaves.push(Leaf { area, depth, grid, active, silent, crossing, open: true, hopeless: true });
         }
         kept
     }

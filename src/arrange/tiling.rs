@@ -114,7 +114,9 @@ impl Tiling {
             let hopeless = failed.len() > subdivision.region;
             for &index in &failed {
                 let flat = |&(side, _): &(u32, bool)| isolator.is_flat(&sides[side as usize]);
-                leaves[index].open |= hopeless || rings[index].iter().any(flat);
+                let stays = hopeless || rings[index].iter().any(flat);
+                leaves[index].open |= stays;
+                leaves[index].hopeless |= stays;
             }
             failed.retain(|&index| !leaves[index].open);
             leaves = quarter(subdivision, leaves, &failed, control);
@@ -131,6 +133,19 @@ impl Tiling {
     ) -> Self {
         let leaves = quarter(subdivision, self.leaves, chosen, control);
         Self::new(subdivision, isolator, leaves, control)
+    }
+
+    /// Where the arc goes that enters a settled leaf at a crossing: side and position of its other end. `None` if it is no
+    /// arc.
+    pub fn follow(&self, leaf: usize, side: u32, position: u32) -> Option<(u32, u32)> {
+        let places = self.places(leaf);
+        let start = places.iter().position(|&(_, s, p)| (s, p) == (side, position))?;
+        let other = self.joints[leaf].iter().find_map(|joint| match joint {
+            Joint::Arc { ends: [a, b], .. } if *a == start => Some(*b),
+            Joint::Arc { ends: [a, b], .. } if *b == start => Some(*a),
+            _ => None,
+        })?;
+        Some((places[other].1, places[other].2))
     }
 
     /// The places around a leaf, counter-clockwise; with each its side and its position there.

@@ -85,7 +85,7 @@ fn work(arguments: &ArrangeArguments) -> Result<(), Failure> {
     });
     done?;
     if stopped {
-        files::leave_interrupted("stopped: what was still open is in clusters");
+        files::leave_interrupted("stopped: what is not decided is left in clusters");
     }
     Ok(())
 }
@@ -196,8 +196,12 @@ fn write(
     fields: &Fields,
 ) -> Result<(), Failure> {
     let tolerance = arguments.tolerance.unwrap_or_else(|| geometry::half_pixel(&arrangement.domain));
-    let lines = geometry::polylines(arrangement, fields, tolerance);
-    let lines: Vec<Vec<[f64; 2]>> = lines.into_iter().map(|line| line.points).collect();
+    // A graph has no lines.
+    let wants_lines = arguments.outputs.iter().any(|output| output.format != DrawingFormat::Dot);
+    let lines: Vec<Vec<[f64; 2]>> = match wants_lines {
+        true => geometry::polylines(arrangement, fields, tolerance).into_iter().map(|line| line.points).collect(),
+        false => Vec::new(),
+    };
     let wants_areas = arguments.outputs.iter().any(|output| output.format == DrawingFormat::Json);
     let areas = match wants_areas {
         true => geometry::areas(arrangement, fields, &geometry::Precision::default()),

@@ -48,6 +48,9 @@ fn arc([x, y]: [f64; 2], radius: f64, from: f64, to: f64) -> Vec<[f64; 2]> {
 }
 
 /// Faces: 1 above the line around everything, 2 below it, 3 and 4 the halves of the first circle, 5 between the two circles
+/// Vertices, kind, curves and polyline of an edge.
+type Drawn = ([u32; 2], EdgeKind, Vec<u16>, Vec<[f64; 2]>);
+
 /// that touch, 6 inside the inner one.
 pub fn sample() -> Sample {
     let kinds = [
@@ -66,7 +69,7 @@ pub fn sample() -> Sample {
     ];
     let curve = EdgeKind::Curve;
     let (frame, c) = (EdgeKind::Frame, [2.5, 2.0]);
-    let edges: Vec<([u32; 2], EdgeKind, Vec<u16>, Vec<[f64; 2]>)> = vec![
+    let edges: Vec<Drawn> = vec![
         ([0, 1], frame, vec![], vec![[0.0, 0.0], [10.0, 0.0]]),
         ([1, 5], frame, vec![], vec![[10.0, 0.0], [10.0, 2.0]]),
         ([5, 2], frame, vec![], vec![[10.0, 2.0], [10.0, 8.0]]),
