@@ -89,6 +89,17 @@ impl Formula {
         }
     }
 
+    /// Whether it is continuous everywhere by its make: then it changes sign at its zeros alone.
+    pub fn is_continuous(&self) -> bool {
+        match self {
+            X | Y | Number(_) => true,
+            Sum(a, b) | Difference(a, b) | Product(a, b) => a.is_continuous() && b.is_continuous(),
+            Quotient(..) => false,
+            Power(a, _) => a.is_continuous(),
+            Call(name, parts) => !["sqrt", "floor"].contains(name) && parts.iter().all(Self::is_continuous),
+        }
+    }
+
     /// The sign, where rounding cannot have made it and near points agree.
     pub fn sign(&self, at: [f64; 2]) -> Option<bool> {
         const NEAR: f64 = 1e-7;
@@ -208,8 +219,8 @@ impl Scene {
 
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Curve { field, condition } in &self.curves {
-            write!(f, "curve {field} = 0")?;
+        for (number, Curve { field, condition }) in self.curves.iter().enumerate() {
+            write!(f, "curve c{number}: {field} = 0")?;
             match condition {
                 Some(condition) => writeln!(f, " where {condition} > 0")?,
                 None => writeln!(f)?,

@@ -154,7 +154,12 @@ impl<'a> Run<'a> {
         let own = &self.points[range.start..=range.end];
         if range.len() == 1 {
             let curve = self.pieces[range.start];
-            accept(curve, distance(&curve, own));
+            let bulge = distance(&curve, own);
+            // Tangents at the ends of a long stretch may carry the curve away from a polyline that is near enough.
+            match bulge <= 2.0 * self.accuracy {
+                true => accept(curve, bulge),
+                false => accept(hermite([own[0], own[1]], [None; 2]), 0.0),
+            }
             return;
         }
         let [from, to] = [range.start, range.end].map(|at| at as f64 / self.pieces.len() as f64);
