@@ -124,7 +124,7 @@ fn steps_are_not_joined() {
         assert!(certainty == Certainty::Miss || row % 10 == 9, "column {}, row {row}", index % 59);
     }
     assert!((50..=60).contains(&picture.stats.proved), "{:?}", picture.stats);
-    for relation in ["y = mod(x, 1)", "y = if x < 0.1 then x else 2 - x", "y = floor(x) + floor(2x) / 4"] {
+    for relation in ["y = mod(x, 1)", "y = (if x < 0.1 then x else 2 - x)", "y = floor(x) + floor(2x) / 4"] {
         let stats = draw(&text(&format!("curve c: {relation}\ndomain [-2.95, 2.95]^2")), &options(90)).stats;
         assert_eq!(stats.unknown, 0, "{relation}: {stats:?}");
     }
@@ -154,10 +154,11 @@ fn two_equations_hold_at_points() {
 
 #[test]
 fn dense_oscillations_are_proved() {
-    // Beyond x + y = 7 the curves are closer than pixels.
+    // Beyond x + y = 7 the curves are closer than pixels. Open stay pixels that only the tips of the waves may reach, at
+    // y - x = 1 and -1: 68 of them.
     let scene = text("curve c: y - x = sin(exp(x + y))\ndomain [-10, 10]^2");
     let picture = draw(&scene, &options(128));
-    assert!(picture.stats.proved > 400 && picture.stats.unknown < 20, "{:?}", picture.stats);
+    assert!(picture.stats.proved > 850 && picture.stats.unknown < 80, "{:?}", picture.stats);
     let single = draw(&scene, &Options { threads: Some(1), ..options(128) });
     assert_eq!(picture.certainty, single.certainty);
 }
