@@ -25,17 +25,16 @@ use crate::interval::Interval;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// One vertex with all nodes as arms.
-    Vertex { kind: VertexKind, area: [Interval; 2], proved: bool, note: Option<String> },
+    Vertex(Vertex),
     /// A regular arc, or nothing at all.
     Regular,
 }
 
-/// A block under construction, with the pairs of functions whose common zero its vertex is.
+/// A block, and the functions whose common zero its vertex is.
 struct Pending {
     cell: usize,
     block: usize,
-    /// The pairs to try, from the same box.
-    candidates: Vec<[Function; 2]>,
+    functions: [Function; 2],
 }
 
 /// Assembles the complex. `outcomes` says of each cluster what it is.
@@ -84,20 +83,20 @@ pub fn assemble(fields: &Fields, tiling: &Tiling, clusters: &[Cluster], outcomes
         let mut blocks = Vec::new();
         for joint in &tiling.joints[index] {
             let function = |of: u8| fields.components[leaf.active[usize::from(of)].component as usize].function;
-            let atoms = |of: u8| -> Vec<[Function; 2]> {
-                let uses = &fields.components[leaf.active[usize::from(of)].component as usize].uses;
-                uses.iter().flat_map(|used| used.atoms.iter().map(|&atom| [function(of), atom])).collect()
-            };
-            let (arms, kind, candidates, axis): (Vec<usize>, _, _, Option<Axis>) = match joint {
+            let (arms, kind, pair, axis): (Vec<usize>, _, _, Option<Axis>) = match joint {
                 Joint::Cross { arms, of } => {
-                    (arms.to_vec(), Some(VertexKind::Crossing), vec![[function(of[0]), function(of[1])]], None)
+                    let pair = [function(of[0]), function(of[1])];
+                    (arms.to_vec(), Some(VertexKind::Crossing), Some(pair), None)
                 }
-                Joint::End { arms, of } => (arms.clone(), Some(VertexKind::End), atoms(*of), None),
-                Joint::Arc { ends, axis, .. } => (ends.to_vec(), None, Vec::new(), Some(*axis)),
+                Joint::End { arms, of } => {
+                    let atom = leaf.active[usize::from(*of)].atom;
+                    (arms.clone(), Some(VertexKind::End), atom.map(|atom| [function(*of), atom]), None)
+                }
+                Joint::Arc { ends, axis } => (ends.to_vec(), None, None, Some(*axis)),
             };
             let arms: Vec<u32> = arms.into_iter().map(node).collect();
-            if kind.is_some() {
-                pending.push(Pending { cell: complex.cells.len(), block: blocks.len(), candidates });
+            if let Some(functions) = pair {
+                pending.push(Pending { cell: complex.cells.len(), block: blocks.len(), functions });
             }
             let vertex = kind.map(|kind| vertex(&complex, kind, &arms, leaf.area));
             blocks.push(Block { nodes: arms, vertex, axis });
@@ -112,15 +111,7 @@ pub fn assemble(fields: &Fields, tiling: &Tiling, clusters: &[Cluster], outcomes
         let blocks = match outcome {
             Outcome::Regular if arms.is_empty() => Vec::new(),
             Outcome::Regular => vec![Block { nodes: arms, vertex: None, axis: None }],
-            Outcome::Vertex { kind, area, proved, note } => {
-                let mut curves: Vec<u16> = match arms.is_empty() {
-                    false => curves(&complex, &arms),
-                    true => cluster.components.iter().flat_map(|&c| users(fields, c)).collect(),
-                };
-                curves.sort_unstable();
-                curves.dedup();
-                vec![Block { nodes: arms, vertex: Some(Vertex { kind, area, proved, curves, note }), axis: None }]
-            }
+            Outcome::Vertex(vertex) => vec![Block { nodes: arms, vertex: Some(vertex), axis: None }],
         };
         complex.cells.push(Cell {
             boxes: cluster.leaves.iter().map(|&leaf| tiling.leaves[leaf as usize].area).collect(),
@@ -132,9 +123,12 @@ pub fn assemble(fields: &Fields, tiling: &Tiling, clusters: &[Cluster], outcomes
     complex
 }
 
-/// The curves that a component belongs to.
-pub fn users(fields: &Fields, component: u32) -> impl Iterator<Item = u16> + '_ {
-    fields.components[component as usize].uses.iter().map(|used| used.curve)
+/// The curves that a component belongs to, rising.
+pub fn users(fields: &Fields, component: u32) -> Vec<u16> {
+    let mut curves: Vec<u16> = fields.components[component as usize].uses.iter().map(|used| used.curve).collect();
+    curves.sort_unstable();
+    curves.dedup();
+    curves
 }
 
 fn curves(complex: &Complex, arms: &[u32]) -> Vec<u16> {
@@ -145,28 +139,24 @@ fn curves(complex: &Complex, arms: &[u32]) -> Vec<u16> {
     curves
 }
 
-/// A vertex of a settled leaf: two components of one curve that cross make a singular point of it.
+/// A vertex of a settled leaf: where two components of one curve cross it has a singular point.
 fn vertex(complex: &Complex, kind: VertexKind, arms: &[u32], area: [Interval; 2]) -> Vertex {
     let curves = curves(complex, arms);
-    let kind = if kind == VertexKind::Crossing && curves.len() == 1 { VertexKind::Singular } else { kind };
+    let of = |arm: u32| &complex.nodes[arm as usize].curves;
+    // Arms of the two components alternate.
+    let itself = kind == VertexKind::Crossing && of(arms[0]).iter().any(|curve| of(arms[1]).contains(curve));
+    let kind = if itself { VertexKind::Singular } else { kind };
     Vertex { kind, area, proved: true, curves, note: None }
 }
 
-/// Narrows the vertices of settled leaves, all together. Which atom ends a curve is not recorded: the one that has a common
-/// zero with it in the leaf.
+/// Narrows the vertices of settled leaves, all together.
 fn locate(fields: &Fields, complex: &mut Complex, pending: &[Pending]) -> u64 {
-    let mut pairs = Vec::new();
-    for Pending { cell, candidates, .. } in pending {
-        let area = complex.cells[*cell].boxes[0];
-        pairs.extend(candidates.iter().map(|&functions| Pair { functions, area, exists: false }));
-    }
+    let pair = |pending: &Pending| Pair { functions: pending.functions, area: complex.cells[pending.cell].boxes[0] };
+    let mut pairs: Vec<Pair> = pending.iter().map(pair).collect();
     let evaluations = refine(fields, &mut pairs);
-    let mut pairs = pairs.into_iter();
-    for Pending { cell, block, candidates } in pending {
-        let found = pairs.by_ref().take(candidates.len()).map(|pair| pair.area);
-        let area = found.filter(|area| !area[0].is_empty()).min_by(|a, b| a[0].width().total_cmp(&b[0].width()));
-        if let (Some(area), Some(vertex)) = (area, &mut complex.cells[*cell].blocks[*block].vertex) {
-            vertex.area = area;
+    for (Pending { cell, block, .. }, pair) in pending.iter().zip(pairs) {
+        if let Some(vertex) = &mut complex.cells[*cell].blocks[*block].vertex {
+            vertex.area = pair.area;
         }
     }
     evaluations

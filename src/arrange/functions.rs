@@ -48,7 +48,16 @@ pub struct Sample {
     pub bits: u32,
 }
 
+/// A bit of [`Sample::bits`] beside those of [`crate::kernel::verdict`]: the function is proved defined on all of the box,
+/// continuous or not. A truth value jumps, so that this is all that can be known of one.
+pub const DEFINED: u32 = 1 << 16;
+
 impl Sample {
+    /// Whether the function is proved defined on all of the box.
+    pub fn is_defined(&self) -> bool {
+        self.bits & (verdict::CONTINUOUS | DEFINED) != 0
+    }
+
     /// Whether the function is proved to have no zero on the box.
     pub fn is_refuted(&self) -> bool {
         self.bits & verdict::REFUTED != 0
@@ -65,9 +74,9 @@ struct Program {
     kernel: Arc<dyn Kernel<f64>>,
     uniforms: Vec<f64>,
     inputs: usize,
-    /// Whether a derivative is defined everywhere, kinks and jumps included, which are enclosed by hulls. Increments of the
+    /// Whether the value, and each derivative, is defined everywhere, kinks and jumps included, which are enclosed by hulls. Increments of the
     /// function are enclosed by derivative times step only where the derivative is defined (contract 7).
-    total: [bool; 2],
+    total: [bool; 3],
 }
 
 /// Which program computes a function, on which constants.
@@ -87,8 +96,11 @@ struct Template {
     graph: Graph,
     root: Value,
     constants: Vec<BigRational>,
-    key: Vec<(Op, Vec<Value>)>,
+    key: Key,
 }
+
+/// What formulas of one shape have in common: operations, operands, and the names of inputs.
+type Key = Vec<(Op, Vec<Value>, Option<String>)>;
 
 impl Functions {
     /// Compiles `roots`, values of `graph`, for boxes inside `domain` and the parameters as they are.
@@ -103,7 +115,7 @@ impl Functions {
         backend: &dyn Backend,
     ) -> Result<Self, Diagnostic> {
         let templates: Vec<Template> = roots.iter().map(|&root| template(graph, root)).collect();
-        let mut families: HashMap<&[(Op, Vec<Value>)], Vec<usize>> = HashMap::new();
+        let mut families: HashMap<&Key, Vec<usize>> = HashMap::new();
         for (index, template) in templates.iter().enumerate() {
             families.entry(&template.key).or_default().push(index);
         }
@@ -111,7 +123,7 @@ impl Functions {
         let mut bindings: Vec<Option<Binding>> = templates.iter().map(|_| None).collect();
         let mut orders = Vec::new();
         for (index, template) in templates.iter().enumerate() {
-            let members = &families[&template.key[..]];
+            let members = &families[&template.key];
             if members.len() < FAMILY {
                 let mut own = Graph::new();
                 let root = own.import(graph, &[roots[index]], &HashMap::new())[0];
@@ -194,10 +206,11 @@ impl Functions {
         };
         (0..chunk.len())
             .map(|lane| {
-                let (value, bits) = enclosure(lane, 0);
+                let (value, mut bits) = enclosure(lane, 0);
+                bits |= if program.total[0] { DEFINED } else { 0 };
                 let slope = [1, 2].map(|output| {
                     let (range, bits) = enclosure(lane, output);
-                    let whole = bits & verdict::CONTINUOUS != 0 || program.total[output - 1] && !range.is_empty();
+                    let whole = bits & verdict::CONTINUOUS != 0 || program.total[output] && !range.is_empty();
                     if whole { range } else { Interval::ENTIRE }
                 });
                 Sample { value, slope, bits }
@@ -206,7 +219,12 @@ impl Functions {
     }
 }
 
-/// The function of x, y and the parameters whose constants are inputs `c0`, `c1`, ..., in the order of the graph.
+/// The name of the input for a constant: none that a parameter can have.
+fn slot(number: usize) -> String {
+    format!("#{number}")
+}
+
+/// The function of x, y and the parameters whose constants are inputs, in the order of the graph.
 fn template(source: &Graph, root: Value) -> Template {
     let mut own = Graph::new();
     let root = own.import(source, &[root], &HashMap::new())[0];
@@ -222,21 +240,21 @@ fn template(source: &Graph, root: Value) -> Template {
         let new = match node.op {
             Op::Const(_) => {
                 constants.extend(own.as_constant(value).cloned());
-                graph.var(&format!("c{}", constants.len() - 1))
+                graph.var(&slot(constants.len() - 1))
             }
             Op::Var(id) => graph.var(&own.variables()[id as usize]),
             op => graph.push(op, &operands),
         };
-        let op = match node.op {
-            // Only the name counts; names of coordinates and constants are the first ones.
-            Op::Const(_) => Op::Const(constants.len() as u32 - 1),
-            Op::Var(_) => graph.node(new).op,
-            op => op,
+        // Numbers of constants and inputs are those of the formula alone; what counts is which input it is.
+        let (op, name) = match node.op {
+            Op::Const(_) => (Op::Const(constants.len() as u32 - 1), None),
+            Op::Var(id) => (Op::Var(0), Some(own.variables()[id as usize].clone())),
+            op => (op, None),
         };
-        key.push((op, operands));
+        key.push((op, operands, name));
         image.push(new);
     }
-    key.push((Op::Pi, vec![image[root.index()]]));
+    key.push((Op::Pi, vec![image[root.index()]], None));
     Template { graph, root: image[root.index()], constants, key }
 }
 
@@ -257,15 +275,15 @@ fn compile(
     }
     let mut inputs: Vec<String> = COORDINATES[..2].iter().map(|name| (*name).to_owned()).collect();
     promises.extend(inputs.iter().cloned().zip(domain));
-    for (slot, range) in constants.iter().enumerate() {
-        inputs.push(format!("c{slot}"));
-        promises.push((format!("c{slot}"), *range));
+    for (number, range) in constants.iter().enumerate() {
+        inputs.push(slot(number));
+        promises.push((slot(number), *range));
     }
     promises.extend(parameters.iter().map(|parameter| (parameter.name.clone(), parameter.value)));
     let range = |name: &String| promises.iter().find(|(n, _)| n == name).map_or(Interval::ENTIRE, |&(_, range)| range);
     let ranges: Vec<Interval> = graph.variables().iter().map(range).collect();
     let (graph, _) = passes::run(&graph, &ranges);
-    let total = [1, 2].map(|output| is_total(&graph, graph.outputs()[output].1));
+    let total = [0, 1, 2].map(|output| is_total(&graph, graph.outputs()[output].1));
     let uniforms: Vec<String> = graph.variables().iter().filter(|name| !inputs.contains(name)).cloned().collect();
     let values = uniforms.iter().flat_map(|name| {
         let value = range(name);

@@ -19,8 +19,8 @@ pub struct Place<'a> {
 /// What joins places of a leaf; indices are into the places.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Joint {
-    /// From one place to another. Whether some condition is undecided in the leaf though it holds at both ends.
-    Arc { ends: [usize; 2], axis: Axis, conditional: bool },
+    /// From one place to another.
+    Arc { ends: [usize; 2], axis: Axis },
     /// Two arcs that cross: of components `active[of[0]]`, `active[of[1]]`, with four arms in cyclic order.
     Cross { arms: [usize; 4], of: [u8; 2] },
     /// An arc along which the curves change, from the places that still carry some.
@@ -71,8 +71,11 @@ pub fn join(leaf: &Leaf, places: &[Place<'_>]) -> Option<Vec<Joint>> {
         if one != other {
             let arms = ends.into_iter().filter(|&end| !places[end].curves.is_empty()).collect();
             joints.push(Joint::End { arms, of: index });
+        } else if active.atom.is_some() {
+            // The same at both ends, but where the atom vanishes a point may be missing, or there alone.
+            return None;
         } else if !one.is_empty() {
-            joints.push(Joint::Arc { ends, axis: active.axis?, conditional: active.conditional });
+            joints.push(Joint::Arc { ends, axis: active.axis? });
         }
     }
     Some(joints)

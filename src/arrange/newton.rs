@@ -12,11 +12,8 @@ const STEPS: usize = 60;
 #[derive(Debug, Clone)]
 pub struct Pair {
     pub functions: [Function; 2],
-    /// Narrowed around the common zeros; empty if there are none.
+    /// Narrowed around the common zeros.
     pub area: [Interval; 2],
-    /// Whether a step mapped the box into its own interior: then there is exactly one common zero (Neumaier 1990, theorem
-    /// 5.1.7).
-    pub exists: bool,
 }
 
 /// Narrows each box by c - J^-1 (f(c), g(c)), by Cramer's rule, which contains all common zeros in the box. Returns the
@@ -46,10 +43,9 @@ pub fn refine(fields: &Fields, pairs: &mut [Pair]) -> u64 {
             let determinant = fx * gy - fy * gx;
             let centre = middle(pair.area);
             let next = [centre[0] - (f * gy - fy * g) / determinant, centre[1] - (fx * g - f * gx) / determinant];
-            pair.exists |= next.iter().zip(&pair.area).all(|(new, old)| old.lo() < new.lo() && new.hi() < old.hi());
             let next = [next[0].intersect(pair.area[0]), next[1].intersect(pair.area[1])];
+            // Numbers too large to be divided leave nothing behind, which proves nothing.
             if next.iter().any(|side| side.is_empty()) {
-                pair.area = [Interval::EMPTY; 2];
                 continue;
             }
             let narrower = next.iter().zip(&pair.area).any(|(new, old)| new.width() < 0.9 * old.width());

@@ -10,6 +10,7 @@ use std::collections::HashSet;
 use crate::arrange::assemble::Outcome;
 use crate::arrange::assemble::users;
 use crate::arrange::cluster::Cluster;
+use crate::arrange::complex::Vertex;
 use crate::arrange::complex::VertexKind;
 use crate::arrange::exact::Contact;
 use crate::arrange::exact::Finding;
@@ -152,18 +153,19 @@ fn outcome(fields: &Fields, cluster: &Cluster, star: &Star) -> Outcome {
         return Outcome::Regular;
     }
     let through = || star.branches.iter().enumerate().filter(|(_, branch)| branch.through);
-    let mut curves: Vec<u16> =
-        through().flat_map(|(position, _)| users(fields, cluster.components[position])).collect();
+    // By component, so that a curve of two components here, which crosses or touches itself, is listed twice.
+    let mut curves: Vec<u16> = through().flat_map(|(p, _)| users(fields, cluster.components[p])).collect();
     curves.sort_unstable();
+    let listed = curves.len();
     curves.dedup();
-    let singular = through().any(|(_, branch)| branch.singular);
+    let singular = curves.len() < listed || through().any(|(_, branch)| branch.singular);
     let crosses = star.contacts.iter().any(|&(_, _, contact)| contact != Contact::Touching);
     let kind = match () {
-        () if curves.len() == 1 || singular => VertexKind::Singular,
+        () if singular => VertexKind::Singular,
         () if crosses => VertexKind::Crossing,
         () => VertexKind::Tangency,
     };
-    Outcome::Vertex { kind, area: star.point, proved: true, note: None }
+    Outcome::Vertex(Vertex { kind, area: star.point, proved: true, curves, note: None })
 }
 
 /// A cluster of which nothing more is known.
@@ -182,5 +184,5 @@ pub fn unresolved(fields: &Fields, tiling: &Tiling, cluster: &Cluster) -> Outcom
         _ => "a point where curves meet, or curves that come this close",
     };
     let note = Some(format!("{what}: {} with {arms} branches", names.join(", ")));
-    Outcome::Vertex { kind: VertexKind::Cluster, area: cluster.area, proved: false, note }
+    Outcome::Vertex(Vertex { kind: VertexKind::Cluster, area: cluster.area, proved: false, curves, note })
 }

@@ -9,7 +9,7 @@ use crate::arrange::field::Fields;
 use crate::arrange::field::Function;
 use crate::arrange::field::Sample;
 use crate::arrange::subdivide::Leaf;
-use crate::arrange::subdivide::contains_zero;
+use crate::arrange::subdivide::excludes_zero;
 use crate::arrange::subdivide::truth;
 use crate::interval::Interval;
 
@@ -206,7 +206,7 @@ impl<'a> Isolator<'a> {
                     failed[request] = true;
                 }
                 if sample.is_refuted() || failed[request] {
-                } else if sample.is_continuous() && !contains_zero(slope) {
+                } else if sample.is_continuous() && excludes_zero(slope) {
                     monotone.push((stretch, slope.lo() > 0.0));
                 } else {
                     let (lo, hi) = (stretch.range.lo(), stretch.range.hi());

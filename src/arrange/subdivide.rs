@@ -50,6 +50,8 @@ pub struct Active {
     pub axis: Option<Axis>,
     /// Whether some condition of it is undecided in the leaf.
     pub conditional: bool,
+    /// The one atom at which a condition may change along the curve in the leaf, and at most once.
+    pub atom: Option<Function>,
 }
 
 /// A leaf of the quadtree.
@@ -222,7 +224,8 @@ impl Subdivision<'_> {
                 continue;
             }
             let Work { area, depth, grid, candidates, silent } = work;
-            let active = candidates.into_iter().map(|component| Active { component, axis: None, conditional: true });
+            let active =
+                candidates.into_iter().map(|component| Active { component, axis: None, conditional: true, atom: None });
             let (active, crossing) = (active.collect(), Vec::new());
             leaves.push(Leaf { area, depth, grid, active, silent, crossing, open: true, hopeless: true });
         }
@@ -272,7 +275,7 @@ impl Subdivision<'_> {
         for (work, met) in works.iter().zip(found.iter_mut()) {
             met.retain_mut(|met| {
                 met.centre = samples.next().expect("one sample for each query").value;
-                !met.sample.is_continuous() || contains_zero(centred(met.centre, met.sample.slope, work.area))
+                !met.sample.is_continuous() || !excludes_zero(centred(met.centre, met.sample.slope, work.area))
             });
         }
     }
@@ -336,11 +339,13 @@ impl Subdivision<'_> {
             if !conditional(decision) {
                 continue;
             }
-            for met in met {
+            for (met, active) in met.iter().zip(&mut decision.active) {
                 let mut changes = 0;
                 let atoms = undecided(met);
-                let known = !atoms.is_empty() || met.uses.iter().all(Option::is_some);
-                for _ in &atoms {
+                // What changes elsewhere than at atoms may change anywhere.
+                let uses = fields.components[met.component as usize].uses.iter().zip(&met.uses);
+                let known = uses.filter(|(_, truth)| truth.is_none()).all(|(used, _)| !used.atoms.is_empty());
+                for &function in &atoms {
                     let mut next = || samples.next().expect("one sample for each query");
                     let (sample, centre) = (next(), next().value);
                     if sample.is_refuted() {
@@ -349,7 +354,10 @@ impl Subdivision<'_> {
                     let atom = Met { component: met.component, sample, centre, uses: Vec::new() };
                     match relation(work.area, met, &atom) {
                         Some(Relation::Apart) => {}
-                        Some(Relation::Transversal) => changes += 1,
+                        Some(Relation::Transversal) => {
+                            changes += 1;
+                            active.atom = Some(function);
+                        }
                         None => changes += 2,
                     }
                 }
@@ -383,7 +391,8 @@ enum Relation {
 /// Everything open.
 fn undecided(works: &[Work]) -> Vec<Decision> {
     let open = |work: &Work| {
-        let active = work.candidates.iter().map(|&component| Active { component, axis: None, conditional: true });
+        let active =
+            work.candidates.iter().map(|&component| Active { component, axis: None, conditional: true, atom: None });
         let settled = work.candidates.is_empty();
         Decision { active: active.collect(), silent: Vec::new(), crossing: Vec::new(), settled }
     };
@@ -395,9 +404,9 @@ pub fn middle(area: [Interval; 2]) -> [Interval; 2] {
     area.map(|side| Interval::point(side.mid()))
 }
 
-/// Whether 0 is in a set; an empty one holds nothing.
-pub fn contains_zero(x: Interval) -> bool {
-    x.lo() <= 0.0 && x.hi() >= 0.0
+/// Whether a set is proved to be without 0. An empty one, which an overflow leaves behind, proves nothing.
+pub fn excludes_zero(x: Interval) -> bool {
+    x.lo() > 0.0 || x.hi() < 0.0
 }
 
 /// The mean-value form of a function that is continuous on the box (Moore 1966).
@@ -412,7 +421,7 @@ pub fn truth(sample: &Sample) -> Option<bool> {
     if sample.bits & verdict::EMPTY != 0 || sample.value.hi() < 0.5 {
         return Some(false);
     }
-    (sample.value.lo() > 0.5 && sample.is_continuous()).then_some(true)
+    (sample.value.lo() > 0.5 && sample.is_defined()).then_some(true)
 }
 
 /// The coordinate of which a regular curve is a function: the one whose partner's derivative is further from 0.
@@ -435,6 +444,7 @@ fn pairs(fields: &Fields, area: [Interval; 2], met: &[Met]) -> Decision {
             component: met.component,
             axis: regular(&met.sample),
             conditional: met.uses.iter().any(Option::is_none),
+            atom: None,
         })
         .collect();
     let mut crossing = Vec::new();
@@ -473,23 +483,25 @@ fn relation(area: [Interval; 2], f: &Met, g: &Met) -> Option<Relation> {
     if bounded {
         let [ax, ay, bx, by] = [fx, fy, gx, gy].map(Interval::mid);
         let length = ax * ax + ay * ay;
-        if length > 0.0 {
-            let factor = Interval::point(-(ax * bx + ay * by) / length);
+        let factor = Interval::point(-(ax * bx + ay * by) / length);
+        // The quotient of very large or very small numbers is no number.
+        if !factor.is_empty() {
             let centre = g.centre + factor * f.centre;
-            if !contains_zero(centred(centre, [gx + factor * fx, gy + factor * fy], area)) {
+            if excludes_zero(centred(centre, [gx + factor * fx, gy + factor * fy], area)) {
                 return Some(Relation::Apart);
             }
         }
     }
     let determinant = fx * gy - fy * gx;
-    if contains_zero(determinant) || determinant.is_empty() {
+    if !excludes_zero(determinant) {
         return None;
     }
     if bounded {
         let middle = middle(area);
         let x = middle[0] - (f.centre * gy - fy * g.centre) / determinant;
         let y = middle[1] - (fx * g.centre - f.centre * gx) / determinant;
-        if x.intersect(area[0]).is_empty() || y.intersect(area[1]).is_empty() {
+        let outside = |range: Interval, side: Interval| !range.is_empty() && range.intersect(side).is_empty();
+        if outside(x, area[0]) || outside(y, area[1]) {
             return Some(Relation::Apart);
         }
     }
