@@ -77,3 +77,37 @@ fn vertices_name_the_curves_through_them() {
     assert_eq!(places(&lines, VertexKind::Singular).len(), 1);
     assert!(lines.proved);
 }
+
+#[test]
+fn merged_scenes_have_the_overlay_of_their_arrangements() {
+    let scene = |text: &str| session::compile(Source::Text { name: "scene.imp", text }, &[]).scene.expect("a scene");
+    let circle = scene("param r = 1 in [0, 2]\ncurve c: x^2 + y^2 = r^2\ndomain [-3, 3]^2");
+    let other = scene("param r = 1 in [0, 2]\ncurve c: (x - 1)^2 + y^2 = r^2\ndomain [-3, 3]^2");
+    let both = imp::arrange::merge(&circle, &other).expect("they agree");
+    assert_eq!(both.shapes.iter().map(|shape| &shape.name[..]).collect::<Vec<_>>(), ["c", "c2"]);
+    let overlay = arrange(&both, &Options::default(), session::backend(), &Control::default()).expect("a plane scene");
+    assert_eq!((places(&overlay, VertexKind::Crossing).len(), overlay.faces.len(), overlay.proved), (2, 5, true));
+    for wrong in ["param r = 2 in [0, 2]\ncurve d: x = r\ndomain [-3, 3]^2", "curve d: x = y\ndomain [-3, 2]^2"] {
+        assert!(imp::arrange::merge(&circle, &scene(wrong)).is_err());
+    }
+}
+
+#[test]
+fn the_plane_has_its_points_at_infinity() {
+    let arranged = |curves: &str| {
+        let text = format!("{curves}\ndomain [-1, 1]^2");
+        let scene = session::compile(Source::Text { name: "scene.imp", text: &text }, &[]).scene.expect("a scene");
+        let whole = imp::arrange::projective(&scene).expect("polynomials");
+        arrange(&whole, &Options::default(), session::backend(), &Control::default()).expect("a plane scene")
+    };
+    // Parallel lines meet at infinity, in two directions, which exact arithmetic proves; oblique ones meet once besides.
+    let parallel = arranged("curve a: y = x\ncurve b: y = x + 1");
+    assert!(parallel.proved);
+    assert_eq!(places(&parallel, VertexKind::Crossing).len(), 2);
+    // A hyperbola goes to infinity in four directions, a parabola touches it in one.
+    let hyperbola = arranged("curve h: x y = 1");
+    assert_eq!((places(&hyperbola, VertexKind::Crossing).len(), hyperbola.proved), (4, true));
+    let text = "curve s: y = sin(x)\ndomain [-1, 1]^2";
+    let sine = session::compile(Source::Text { name: "scene.imp", text }, &[]).scene.expect("a scene");
+    assert!(imp::arrange::projective(&sine).is_err());
+}

@@ -37,11 +37,6 @@ impl BoxIndex {
         self.boxes[number as usize]
     }
 
-    /// All boxes.
-    pub fn boxes(&self) -> &[[Interval; 2]] {
-        &self.boxes
-    }
-
     fn grow(&mut self, items: std::ops::Range<usize>) {
         let empty = [Interval::EMPTY; 2];
         let own = &self.order[items.clone()];

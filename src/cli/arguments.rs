@@ -216,6 +216,9 @@ pub struct ArrangeArguments {
     /// Settle nothing with exact arithmetic.
     #[arg(long)]
     pub no_exact: bool,
+    /// Arrange the whole plane, drawn in a disc whose circle is at infinity; polynomial curves only.
+    #[arg(long, conflicts_with = "certificate")]
+    pub projective: bool,
     /// Write what `imp verify` needs to check the arrangement.
     #[arg(long, value_name = "OUT")]
     pub certificate: Option<PathBuf>,

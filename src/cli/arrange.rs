@@ -68,6 +68,7 @@ fn work(arguments: &ArrangeArguments) -> Result<(), Failure> {
         let help = format!("draw it with `imp render {name}`, or write curves in x and y and `domain [-2, 2]^2`");
         return Err(Diagnostic::error(code::BAD_OPTION, title).help(help).into());
     }
+    let scene = if arguments.projective { arrange::projective(&scene).map_err(fail)? } else { scene };
     if arguments.method == MethodArgument::Published {
         return published(arguments, &Fields::new(&scene, session::backend()).map_err(fail)?);
     }
