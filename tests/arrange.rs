@@ -22,23 +22,15 @@ const OPEN: &[(&str, &str)] = &[
     ("circle that touches the frame", "a contact with a side of the domain is no crossing of it"),
     ("crossing on the frame", "two curves pass through one point of a side"),
     ("half disc", "two ends in one point"),
+    ("cusp of the second kind", "its branches part so slowly that the boxes with both of them outgrow a region"),
     ("corner of a maximum", "a corner of one curve has no slope"),
     ("square of a maximum", "corners of one curve have no slope"),
     ("cube root and line", "the slope of the cube root is unbounded in 0"),
 ];
 
-/// Cases that take seconds, around cusps in which large boxes say little: left out unless `IMP_ARRANGE_ALL` is set.
-const COSTLY: &[&str] = &["cusp of the second kind", "deltoid"];
-
 /// Contacts of curves that are no polynomials: a double root, which no enclosure of width above 0 tells from none or two.
 /// If one of these comes out as proved, look how.
 const UNDECIDABLE: &[&str] = &["exponential and its tangent", "x^y = y^x", "sine and its inverse relation"];
-
-/// The cases to arrange.
-fn tried() -> impl Iterator<Item = &'static Case> {
-    let costly = std::env::var_os("IMP_ARRANGE_ALL").is_some();
-    all().filter(move |case| costly || !COSTLY.contains(&case.name))
-}
 
 fn all() -> impl Iterator<Item = &'static Case> {
     let tables = [cases::CIRCLES, cases::SINGULAR, named::NAMED, cases::REPEATED, cases::FRAMED, formulas::FORMULAS];
@@ -49,7 +41,7 @@ fn all() -> impl Iterator<Item = &'static Case> {
 fn judged(options: &Options) -> (Vec<String>, BTreeSet<&'static str>) {
     let mut wrong = Vec::new();
     let mut proved = BTreeSet::new();
-    for case in tried() {
+    for case in all() {
         let start = Instant::now();
         let outcome = arranged(case.scene, options).and_then(|arrangement| Figures::of(&arrangement));
         match outcome {
@@ -72,7 +64,7 @@ fn names_and_scenes_are_distinct() {
     let scenes: BTreeSet<_> = all().map(|case| case.scene).collect();
     assert_eq!((names.len(), scenes.len()), (all().count(), all().count()));
     assert!(all().all(|case| !case.source.is_empty()));
-    let listed = OPEN.iter().map(|(name, _)| name).chain(UNDECIDABLE).chain(COSTLY);
+    let listed = OPEN.iter().map(|(name, _)| name).chain(UNDECIDABLE);
     assert!(listed.clone().all(|name| names.contains(name)), "{:?}", listed.collect::<Vec<_>>());
 }
 
@@ -96,9 +88,9 @@ fn the_tables_obey_eulers_formula() {
 fn what_is_said_to_be_proved_is_right() {
     let (mut wrong, proved) = judged(&Options::default());
     println!("{} of {} fully proved", proved.len(), all().count());
-    for case in tried().filter(|case| !proved.contains(case.name)) {
+    for case in all().filter(|case| !proved.contains(case.name)) {
         println!("open: {}", case.name);
-        let listed = OPEN.iter().map(|(name, _)| name).chain(UNDECIDABLE).chain(COSTLY);
+        let listed = OPEN.iter().map(|(name, _)| name).chain(UNDECIDABLE);
         if !listed.into_iter().any(|name| *name == case.name) {
             wrong.push(format!("{}: no longer proved", case.name));
         }
