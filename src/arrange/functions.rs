@@ -30,7 +30,7 @@ use crate::passes;
 use crate::program::scene::COORDINATES;
 use crate::program::scene::Parameter;
 
-/// An index into the functions of [`Fields`].
+/// An index into the functions of [`crate::arrange::Fields`].
 pub type Function = u32;
 
 /// How many functions of one shape are worth a kernel that takes their constants as inputs.

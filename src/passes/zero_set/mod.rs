@@ -7,11 +7,11 @@
 //! factors of their product, jumps by the pieces between them. What the formula said beside its zeros (where a divisor
 //! vanishes there is no value) stays as a condition of the piece.
 //!
-//! - [`space`]: the graph in which this happens, simplified as it grows;
-//! - [`sum`]: sums as terms, products as factors, one form for the multiples of a field;
-//! - [`rules`] and [`sums`]: what says the vanishing of an operation, and of a sum;
-//! - [`poles`]: numerators; [`jumps`]: steps, remainders and selections;
-//! - [`guard`]: conditions, and where a value is defined; [`settle`]: which of them a piece needs.
+//! - `space`: the graph in which this happens, simplified as it grows;
+//! - `sum`: sums as terms, products as factors, one form for the multiples of a field;
+//! - `rules` and `sums`: what says the vanishing of an operation, and of a sum;
+//! - `poles`: numerators; `jumps`: steps, remainders and selections;
+//! - `guard`: conditions, and where a value is defined; `settle`: which of them a piece needs.
 
 mod guard;
 mod jumps;
