@@ -9,6 +9,7 @@ const LAYERS: &[(&str, u8)] = &[
     ("diagnostic", 0),
     ("control", 0),
     ("interval", 0),
+    ("envelope", 1),
     ("graph", 1),
     ("syntax", 1),
     ("program", 2),

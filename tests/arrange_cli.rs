@@ -1,10 +1,16 @@
 //! `imp arrange` and `imp verify` as their users meet them: what is printed, which files are written, what mistakes are
 //! answered with, and that Ctrl-C leaves what there is.
 
+#[path = "support/command.rs"]
+mod command;
+
 use std::fs;
-use std::path::Path;
 use std::process::Command;
-use std::process::Output;
+
+use command::command;
+use command::fail;
+use command::folder;
+use command::succeed;
 
 use imp::arrange::Options;
 use imp::arrange::arrange;
@@ -18,42 +24,8 @@ use imp::interpret::Interpreter;
 use imp::session;
 use imp::session::Source;
 use serde_json::Value;
-use tempfile::TempDir;
 
 const CIRCLES: &str = "curve a: x^2 + y^2 = 1\ncurve b: (x - 1)^2 + y^2 = 1\ndomain [-2, 3] x [-2, 2]\n";
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_imp"));
-    command.args(arguments).current_dir(folder).env_remove("RUST_BACKTRACE").env_remove("NO_COLOR");
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-/// Runs a command that must succeed silently on stderr; its stdout.
-fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Runs a command that must fail as the user's mistake; its stderr.
-fn fail(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
-
-/// A folder with the given files.
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    folder
-}
 
 #[test]
 fn the_summary_is_one_line_of_json() {

@@ -29,7 +29,7 @@ fn setting(name: &str, default: u64) -> u64 {
 
 /// Coarse, so that what stays open costs little.
 fn options(threads: usize, exact: bool) -> Options {
-    Options { epsilon: Some(0.02), region: 64, exact, threads: Some(threads), tolerance: None }
+    Options { epsilon: Some(0.02), region: 64, exact, threads: Some(threads) }
 }
 
 /// All of an arrangement but the time it took.

@@ -3,51 +3,24 @@
 //! `tests/cli/errors/NAME.imp` holds a mistake, `NAME.expected` what `imp check` says of it; inputs that are large or no
 //! text are made here. With `IMP_BLESS=1` the messages found are written back.
 
+#[path = "support/command.rs"]
+mod command;
+
 use std::fs;
 use std::io::Read;
 use std::io::Write;
 use std::path::Path;
 use std::path::PathBuf;
 use std::process::Command;
-use std::process::Output;
 use std::process::Stdio;
 
-use tempfile::TempDir;
+use command::command;
+use command::fail;
+use command::folder;
+use command::run;
+use command::succeed;
 
 const SPHERE: &str = "x^2 + y^2 + z^2 = 1\n";
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_imp"));
-    command.args(arguments).current_dir(folder).env_remove("RUST_BACKTRACE").env_remove("NO_COLOR");
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-/// Runs a command that must succeed silently on stderr; its stdout.
-fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Runs a command that must fail as the user's mistake; its stderr.
-fn fail(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
-
-/// A folder with the given files.
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    folder
-}
 
 /// The names in a folder, sorted.
 fn names(folder: &Path) -> Vec<String> {

@@ -1,35 +1,21 @@
 //! `imp cost`: what it measures, and the files it writes.
 
+#[path = "support/command.rs"]
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
-use std::process::Output;
+
+use command::fail;
+use command::folder;
+use command::succeed;
 
 use serde_json::Value;
 
 const SPHERE: &str = "x^2 + y^2 + z^2 = 1\ndomain [-2, 2]^3\n";
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_imp"));
-    command.args(arguments).current_dir(folder).env_remove("RUST_BACKTRACE").output().unwrap()
-}
-
-fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-fn fail(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
-
 fn scene(text: &str) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("scene.imp"), text).unwrap();
-    folder
+    folder(&[("scene.imp", text)])
 }
 
 fn json(folder: &Path, name: &str) -> Value {

@@ -11,12 +11,10 @@ pub struct Options {
     pub exact: bool,
     /// Worker threads; `None` for one per processor. The result does not depend on them.
     pub threads: Option<usize>,
-    /// How far a polyline may be from its curve.
-    pub tolerance: Option<f64>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { epsilon: None, region: 4096, exact: true, threads: None, tolerance: None }
+        Self { epsilon: None, region: 4096, exact: true, threads: None }
     }
 }

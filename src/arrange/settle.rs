@@ -62,7 +62,7 @@ pub fn settle(fields: &Fields, tiling: &Tiling, cluster: &Cluster) -> Settled {
         Finding::Star(star) => {
             let overlaps = |area: [Interval; 2]| (0..2).all(|axis| !area[axis].intersect(star.point[axis]).is_empty());
             let near = (0..).zip(&tiling.leaves).filter(|(_, leaf)| overlaps(leaf.area)).map(|(leaf, _)| leaf);
-            let (own, other): (Vec<u32>, Vec<u32>) = near.partition(|leaf| cluster.leaves.contains(leaf));
+            let (own, other): (Vec<u32>, Vec<u32>) = near.partition(|leaf| cluster.leaves.binary_search(leaf).is_ok());
             if own.is_empty() && passes(&nodes) {
                 return Settled::Done(Outcome::Regular);
             }
@@ -132,7 +132,7 @@ fn holes(tiling: &Tiling, cluster: &Cluster) -> Vec<usize> {
     let rims = cluster.boundary[1..].iter().flatten();
     let mut stack: Vec<u32> = rims.flat_map(|&(side, _)| tiling.sides[side as usize].leaves).flatten().collect();
     while let Some(leaf) = stack.pop() {
-        if !cluster.leaves.contains(&leaf) && seen.insert(leaf) {
+        if seen.insert(leaf) {
             found.push(leaf as usize);
             stack.extend(&neighbours[&leaf]);
         }

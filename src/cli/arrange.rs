@@ -72,12 +72,8 @@ fn work(arguments: &ArrangeArguments) -> Result<(), Failure> {
     if arguments.method == MethodArgument::Published {
         return published(arguments, &Fields::new(&scene, session::backend()).map_err(fail)?);
     }
-    let options = arrange::Options {
-        epsilon: arguments.epsilon,
-        exact: !arguments.no_exact,
-        tolerance: arguments.tolerance,
-        ..arrange::Options::default()
-    };
+    let options =
+        arrange::Options { epsilon: arguments.epsilon, exact: !arguments.no_exact, ..arrange::Options::default() };
     let (done, stopped) = files::interruptible(|cancel| {
         let arranged = watched(|progress| {
             arrange::arrange(&scene, &options, session::backend(), &Control::new(Some(progress), Some(cancel)))

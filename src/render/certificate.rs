@@ -4,18 +4,14 @@
 //! believed: the fingerprint guards against mixing up files, everything else is checked against the scene.
 
 use std::fmt::Write as _;
-use std::io::Read;
-use std::io::Write as _;
 
-use flate2::Compression;
-use flate2::read::ZlibDecoder;
-use flate2::write::ZlibEncoder;
 use glam::DVec3;
 use serde::Deserialize;
 use serde::Serialize;
 
 use crate::diagnostic::Diagnostic;
-use crate::diagnostic::code;
+use crate::envelope::open;
+use crate::envelope::seal;
 use crate::program::scene::Parameter;
 use crate::program::scene::Projection;
 use crate::program::scene::Scene;
@@ -28,9 +24,6 @@ use crate::render::outcome::Surface;
 use crate::render::stats::Stats;
 
 const MAGIC: &[u8; 8] = b"imp-ray1";
-
-/// The largest unpacked certificate that is read: a damaged file must not exhaust memory.
-const MAX_BYTES: u64 = 1 << 32;
 
 /// The proof of one picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -134,10 +127,7 @@ impl Certificate {
 
     /// The bytes of a certificate file.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let plain = postcard::to_stdvec(self).expect("numbers and lists have an encoding");
-        let mut encoder = ZlibEncoder::new(MAGIC.to_vec(), Compression::fast());
-        encoder.write_all(&plain).expect("memory takes all bytes");
-        encoder.finish().expect("memory takes all bytes")
+        seal(MAGIC, self)
     }
 
     /// Reads a certificate file.
@@ -145,15 +135,7 @@ impl Certificate {
     /// # Errors
     /// If the bytes are not a whole certificate (`E0507`).
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Diagnostic> {
-        let damaged = || Diagnostic::error(code::NOT_A_CERTIFICATE, "this file is no certificate, or is damaged");
-        let packed = bytes.strip_prefix(MAGIC).ok_or_else(damaged)?;
-        let mut plain = Vec::new();
-        let mut decoder = ZlibDecoder::new(packed).take(MAX_BYTES);
-        decoder.read_to_end(&mut plain).map_err(|_| damaged())?;
-        match postcard::take_from_bytes(&plain) {
-            Ok((certificate, [])) => Ok(certificate),
-            Ok(_) | Err(_) => Err(damaged()),
-        }
+        open(MAGIC, bytes)
     }
 }
 
