@@ -1,0 +1,2 @@
+//! Types of kernels that Imp compiled ahead of time.
+#![no_std]
