@@ -20,10 +20,13 @@ const LAYERS: &[(&str, u8)] = &[
     ("codegen", 5),
     ("render", 5),
     ("arrange", 5),
+    ("roots", 5),
     ("session", 6),
     ("accuracy", 6),
     ("repl", 7),
-    ("cli", 8),
+    ("library", 7),
+    ("build", 8),
+    ("cli", 9),
 ];
 
 /// Past this a file is split.
