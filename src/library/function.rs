@@ -27,6 +27,9 @@ pub struct Function {
     outputs: Arc<[String]>,
 }
 
+/// The input of a kernel of no variables.
+const UNUSED: &str = "nothing";
+
 /// How a function is compiled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
@@ -201,9 +204,15 @@ impl Function {
         let outputs = graph.outputs().iter().map(|&(_, value)| output(value)).collect();
         let domain = resolved.inputs.iter().zip(&ranges).filter(|(_, range)| !range.is_entire());
         let domain = domain.map(|(name, range)| (graph.var(name), *range)).collect();
+        let mut inputs = resolved.inputs.clone();
+        if inputs.is_empty() {
+            // A constant has a row of inputs, too: kernels count rows by their inputs.
+            inputs.push(UNUSED.to_owned());
+            graph.var(UNUSED);
+        }
         let promised = resolved.parameters.iter().filter_map(|p| Some((p.name.clone(), p.range?)));
         Ok(Spec {
-            inputs: resolved.inputs.clone(),
+            inputs,
             uniforms: resolved.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             outputs,
             domain,
