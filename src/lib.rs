@@ -61,7 +61,7 @@
 //! | no. | modules |
 //! |---|---|
 //! | 0 | [`diagnostic`]: where source text lives, messages; [`interval`]: intervals, decorations, affine forms; [`control`]: progress and cancellation |
-//! | 1 | [`graph`]: hash-consed SSA over exact real operations; [`syntax`]: tokens, grammar, tree, no meaning; [`envelope`]: files of certificates |
+//! | 1 | [`graph`]: hash-consed SSA over exact real operations; [`syntax`]: tokens, grammar, tree, no meaning; [`envelope`]: files of certificates; [`limits`]: what a source may cost |
 //! | 2 | [`program`]: names, kinds, modules, the standard library, scenes; [`passes`]: folding and rewriting |
 //! | 3 | [`mod@derive`]: gradients, formulas along rays, interval and affine programs of lanes |
 //! | 4 | [`kernel`]: what consumers call: packets of boxes in, enclosures and verdicts out |
@@ -92,6 +92,7 @@ pub mod graph;
 pub mod interpret;
 pub mod interval;
 pub mod kernel;
+pub mod limits;
 pub mod passes;
 pub mod program;
 pub mod render;
