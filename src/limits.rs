@@ -7,6 +7,7 @@
 
 use std::fmt;
 use std::sync::atomic::AtomicU32;
+use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use std::time::Instant;
@@ -48,6 +49,12 @@ impl Default for Limits {
 }
 
 impl Limits {
+    /// No limit at all, for what was held to limits before.
+    pub const fn unlimited() -> Self {
+        let all = usize::MAX;
+        Self { source_bytes: all, files: all, steps: all, nodes: all, operations: all, time: Duration::MAX }
+    }
+
     /// For formulas from strangers: 64 KiB of text, no files but the standard library, 20 000 nodes, half a second.
     pub fn untrusted() -> Self {
         Self {
@@ -70,12 +77,14 @@ pub struct Budget {
     limits: Limits,
     start: Instant,
     looks: AtomicU32,
+    /// Bytes of text taken so far.
+    source: AtomicUsize,
 }
 
 impl Budget {
     /// Begins now.
     pub fn new(limits: &Limits) -> Self {
-        Self { limits: *limits, start: Instant::now(), looks: AtomicU32::new(0) }
+        Self { limits: *limits, start: Instant::now(), looks: AtomicU32::new(0), source: AtomicUsize::new(0) }
     }
 
     pub fn limits(&self) -> &Limits {
@@ -101,6 +110,36 @@ impl Budget {
         let taken = self.start.elapsed();
         let allowed = self.limits.time;
         if taken <= allowed { Ok(()) } else { Err(Exceeded::Time { taken, allowed }) }
+    }
+
+    /// Bytes of text that may still be read.
+    pub fn source_left(&self) -> usize {
+        self.limits.source_bytes.saturating_sub(self.source.load(Ordering::Relaxed))
+    }
+
+    /// Counts a text.
+    ///
+    /// # Errors
+    /// If it is one too much.
+    pub fn source(&self, bytes: usize) -> Result<(), Exceeded> {
+        let before = self.source.fetch_add(bytes, Ordering::Relaxed);
+        Exceeded::counted("bytes of text", before.saturating_add(bytes), self.limits.source_bytes)
+    }
+
+    /// Whether so many files may be imported.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn files(&self, files: usize) -> Result<(), Exceeded> {
+        Exceeded::counted("imported files", files, self.limits.files)
+    }
+
+    /// Whether so many steps of inlining are allowed.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn steps(&self, steps: usize) -> Result<(), Exceeded> {
+        Exceeded::counted("steps of inlining", steps, self.limits.steps)
     }
 
     /// Whether a graph of so many nodes is allowed.
