@@ -61,7 +61,7 @@
 //! | no. | modules |
 //! |---|---|
 //! | 0 | [`diagnostic`]: where source text lives, messages; [`interval`]: intervals, decorations, affine forms; [`control`]: progress and cancellation |
-//! | 1 | [`graph`]: hash-consed SSA over exact real operations; [`syntax`]: tokens, grammar, tree, no meaning; [`envelope`]: files of certificates |
+//! | 1 | [`graph`]: hash-consed SSA over exact real operations; [`syntax`]: tokens, grammar, tree, no meaning; [`envelope`]: files of certificates; [`limits`]: what a source may cost |
 //! | 2 | [`program`]: names, kinds, modules, the standard library, scenes; [`passes`]: folding and rewriting |
 //! | 3 | [`mod@derive`]: gradients, formulas along rays, interval and affine programs of lanes |
 //! | 4 | [`kernel`]: what consumers call: packets of boxes in, enclosures and verdicts out |
@@ -93,6 +93,7 @@ pub mod interpret;
 pub mod interval;
 pub mod kernel;
 pub mod library;
+pub mod limits;
 pub mod passes;
 pub mod program;
 pub mod render;
@@ -107,7 +108,9 @@ pub use library::Enclosure;
 pub use library::Error;
 pub use library::Function;
 pub use library::IntervalKernel;
+pub use library::Loader;
 pub use library::Options;
 pub use library::PointKernel;
 pub use library::Program;
 pub use library::Verdict;
+pub use limits::Limits;
