@@ -82,6 +82,7 @@
 
 pub mod accuracy;
 pub mod arrange;
+pub mod build;
 pub mod cli;
 pub mod codegen;
 pub mod control;

@@ -336,13 +336,7 @@ impl<T: Real, const V: usize, const P: usize, const O: usize> Boxes<T, V, P, O> 
         let verdicts = verdict_pointer(count * O, verdicts)?;
         // SAFETY: the slices have the lengths that the kernel takes for `count` boxes.
         unsafe {
-            (self.rows)(
-                boxes.as_ptr().cast(),
-                pointer(parameters),
-                enclosures.as_mut_ptr().cast(),
-                verdicts,
-                count,
-            )
+            (self.rows)(boxes.as_ptr().cast(), pointer(parameters), enclosures.as_mut_ptr().cast(), verdicts, count)
         };
         Ok(())
     }
