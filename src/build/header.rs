@@ -5,7 +5,6 @@ use std::fmt::Write;
 use crate::build::interface::Exported;
 use crate::build::interface::Interface;
 use crate::build::interface::Kernel;
-use crate::build::interface::Parameter;
 use crate::build::names;
 use crate::derive::Precision;
 use crate::interval::Interval;
@@ -158,13 +157,8 @@ fn declarations(interface: &Interface, function: &Exported, out: &mut String) ->
         " *\n * Variables, in order: {}.",
         list(function.variables.iter().map(|name| name.written.as_str()))
     )?;
-    for Parameter { name, value, range, .. } in &function.parameters {
-        let name = comment(&name.written);
-        write!(out, " * Parameter {name}: {value} unless given")?;
-        match *range == Interval::ENTIRE {
-            true => writeln!(out, ", any number.")?,
-            false => writeln!(out, ", inside {range}.")?,
-        }
+    for parameter in &function.parameters {
+        writeln!(out, " * Parameter {}: {}.", comment(&parameter.name.written), parameter.describe())?;
     }
     writeln!(out, " */")?;
     for kernel in &interface.kernels {
@@ -313,6 +307,6 @@ mod tests {
         let text = header(&sample(Precision::Double));
         assert!(text.contains("imp_enclosure sample_f_interval_at(imp_interval x, imp_interval double_, const double"));
         assert!(text.contains("#define sample_move_gradient_OUTPUTS 4"));
-        assert!(text.contains("Parameter a: [1, 1] unless given, inside [0, 2]."), "{text}");
+        assert!(text.contains("Parameter a: 1 unless given; inside [0, 2]."), "{text}");
     }
 }

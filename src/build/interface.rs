@@ -123,6 +123,20 @@ pub struct Parameter {
     pub range: Interval,
 }
 
+impl Parameter {
+    /// The default, and where it may lie, as a user reads it.
+    pub fn describe(&self) -> String {
+        let value = match self.value.lo() == self.value.hi() {
+            true => self.value.lo().to_string(),
+            false => format!("in {}", self.value),
+        };
+        match self.range == Interval::ENTIRE {
+            true => format!("{value} unless given; any number"),
+            false => format!("{value} unless given; inside {}", self.range),
+        }
+    }
+}
+
 impl Exported {
     /// What a kernel computes, in order: each value, followed by its partial derivatives if they are asked for.
     pub fn outputs(&self, kernel: Kernel) -> Vec<String> {

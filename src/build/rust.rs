@@ -128,13 +128,9 @@ fn parameters_struct(interface: &Interface, function: &Exported, out: &mut Strin
         function.parameters.iter().map(|parameter| (names::in_rust(&parameter.name.identifier), parameter)).collect();
     writeln!(out, "    /// The parameters of this function; the defaults are those of the formulas.")?;
     writeln!(out, "    #[derive(Debug, Clone, Copy, PartialEq)]\n    pub struct Parameters {{")?;
-    for (field, Parameter { name, value, range, .. }) in &fields {
-        let inside = if *range == Interval::ENTIRE { "any number".to_owned() } else { format!("inside `{range}`") };
-        writeln!(
-            out,
-            "        /// `{}`: `{value}` by default, {inside}.\n        pub {field}: Interval,",
-            name.written
-        )?;
+    for (field, parameter) in &fields {
+        writeln!(out, "        /// `{}`: {}.", parameter.name.written, parameter.describe())?;
+        writeln!(out, "        pub {field}: Interval,")?;
     }
     writeln!(
         out,
