@@ -101,7 +101,9 @@ pub mod repl;
 pub mod session;
 pub mod syntax;
 
+pub use build::build;
 pub use derive::Rounding;
+pub use imp_runtime::include_kernels;
 pub use interval::Interval;
 pub use library::Columns;
 pub use library::Enclosure;

@@ -200,12 +200,7 @@ fn exported(program: &Program, function: &Function, precision: Precision) -> Exp
     }
 }
 
-fn routine(
-    interface: &Interface,
-    function: &Function,
-    exported: &Exported,
-    kernel: Kernel,
-) -> Result<Routine, Error> {
+fn routine(interface: &Interface, function: &Function, exported: &Exported, kernel: Kernel) -> Result<Routine, Error> {
     let precision = interface.precision;
     let options = Options {
         affine: matches!(kernel, Kernel::Affine | Kernel::AffineGradient),

@@ -190,7 +190,9 @@ mod tests {
         let levels = [Level::V3];
         assert_eq!(target("x86_64-unknown-linux-gnu", &levels), Ok(Target::X86_64(levels.to_vec())));
         assert_eq!(target("aarch64-unknown-linux-musl", &levels), Ok(Target::Aarch64));
-        for other in ["x86_64-pc-windows-msvc", "aarch64-apple-darwin", "wasm32-unknown-unknown", "x86_64-unknown-linux-gnux32"] {
+        for other in
+            ["x86_64-pc-windows-msvc", "aarch64-apple-darwin", "wasm32-unknown-unknown", "x86_64-unknown-linux-gnux32"]
+        {
             assert!(target(other, &levels).unwrap_err().title.contains(other));
         }
         assert!(target("i686-unknown-linux-gnu", &levels).is_err());
