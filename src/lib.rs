@@ -82,6 +82,7 @@
 
 pub mod accuracy;
 pub mod arrange;
+pub mod build;
 pub mod cli;
 pub mod codegen;
 pub mod control;
@@ -101,7 +102,9 @@ pub mod repl;
 pub mod session;
 pub mod syntax;
 
+pub use build::build;
 pub use derive::Rounding;
+pub use imp_runtime::include_kernels;
 pub use interval::Interval;
 pub use library::Columns;
 pub use library::Enclosure;

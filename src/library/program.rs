@@ -195,6 +195,11 @@ impl Program {
         Err(Error::Source(Report::new(sources, found)))
     }
 
+    /// Every file that was read.
+    pub(crate) fn sources(&self) -> &SourceMap {
+        &self.parsed.sources
+    }
+
     /// The scene of the program's shapes: what [`crate::render`] and [`crate::arrange`] take.
     ///
     /// # Errors
