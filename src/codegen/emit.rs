@@ -55,7 +55,7 @@ const MAX_OPERATIONS: usize = 400_000;
 
 /// Bytes of stack that a kernel may take, which runs on threads that it does not know: half of the stack of a thread that
 /// Rust starts.
-const MAX_FRAME: u32 = 1 << 20;
+pub const MAX_FRAME: u32 = 1 << 20;
 
 /// What code is made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
