@@ -17,7 +17,8 @@ use crate::kernel::Kernel;
 
 pub use emit::Emitted;
 pub use emit::emit;
-use jit::Width;
+pub use jit::Width;
+pub use widen::Registers;
 
 /// The compiling backend. Needs x86-64 with AVX and FMA; elsewhere every order fails with a diagnostic and the caller
 /// falls back to the interpreter.
@@ -33,25 +34,26 @@ impl Compiler {
 
 impl Backend for Compiler {
     fn compile_f32(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
-        compile(spec, Width::Widest)
+        compile(spec, Width::Best)
     }
 
     fn compile_f64(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
-        compile(spec, Width::Widest)
+        compile(spec, Width::Best)
     }
 }
 
-/// The compiler without the widening pass: what widened kernels must equal bit for bit, and what they are timed against.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct NarrowCompiler;
+/// The compiler for registers of a given width: widened kernels must equal narrow ones bit for bit, and are timed against
+/// them.
+#[derive(Debug, Clone, Copy)]
+pub struct CompilerFor(pub Width);
 
-impl Backend for NarrowCompiler {
+impl Backend for CompilerFor {
     fn compile_f32(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
-        compile(spec, Width::Narrow)
+        compile(spec, self.0)
     }
 
     fn compile_f64(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
-        compile(spec, Width::Narrow)
+        compile(spec, self.0)
     }
 }
 
