@@ -13,6 +13,7 @@ use crate::graph::Op;
 use crate::graph::Value;
 use crate::interval::Interval;
 use crate::limits::Budget;
+use crate::limits::Exceeded;
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::Module;
 use crate::syntax::ast::Name;
@@ -39,8 +40,8 @@ use super::settings::Settings;
 use super::values::Meaning;
 
 /// Symbolic differentiation, which a higher layer provides: adds the derivative of the second argument by the third, an
-/// input, to the graph.
-pub type Differentiate = dyn Fn(&mut Graph, Value, Value) -> Value;
+/// input, to the graph, within a budget.
+pub type Differentiate = dyn Fn(&mut Graph, Value, Value, &Budget) -> Result<Value, Exceeded>;
 
 /// What resolving needs from outside.
 pub struct Context<'a> {

@@ -131,7 +131,7 @@ impl Artefact {
 
         // Tree to formulas in one graph, with the scene around them. Statements that could not be read do not keep the
         // others from being checked.
-        let context = |overrides| Context { importer, differentiate: &derive::derivative, overrides, budget };
+        let context = |overrides| Context { importer, differentiate: &derive::derivative_within, overrides, budget };
         let overrides = self.values(overrides, &context(&[]))?;
         let (resolved, found) = program::resolve(&mut self.sources, file, parsed, &context(&overrides));
         self.resolved = resolved;
