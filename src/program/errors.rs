@@ -56,6 +56,11 @@ pub(super) fn import_failed(path: &str, span: Span, reason: &str) -> Diagnostic 
     Diagnostic::error(code::CANNOT_IMPORT, format!("cannot import \"{path}\": {reason}")).at(span, "imported here")
 }
 
+/// A function that a caller could not give both values of one name.
+pub(super) fn ambiguous_variable(title: String, span: Span) -> Diagnostic {
+    Diagnostic::error(code::DUPLICATE_NAME, title).at(span, "both are used here")
+}
+
 pub(super) fn same_parameter(name: &str, span: Span, first: Span) -> Diagnostic {
     Diagnostic::error(code::DUPLICATE_NAME, format!("parameter `{name}` is declared in two files"))
         .at(span, "declared here")

@@ -91,6 +91,12 @@ impl<'p> Lowerer<'p> {
         (self.graph, self.diagnostics)
     }
 
+    /// What has been reported; then all is forgotten, so that the next formula reports the same things anew.
+    pub fn take_diagnostics(&mut self) -> Vec<Diagnostic> {
+        self.reported.clear();
+        std::mem::take(&mut self.diagnostics)
+    }
+
     pub fn has_errors(&self) -> bool {
         !self.diagnostics.is_empty()
     }

@@ -298,7 +298,7 @@ fn equation_among(lowerer: &mut Lowerer, truth: Value) -> Option<(Value, Option<
 }
 
 /// All parameters in source order, those of imported files after, and the time last.
-fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]) -> Vec<Parameter> {
+pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]) -> Vec<Parameter> {
     let program = lowerer.program;
     let mut found: Vec<(Parameter, Span)> = Vec::new();
     let mut items = program.order.clone();
@@ -431,7 +431,7 @@ fn compact(graph: &Graph, mut shapes: Vec<Shape>) -> (Graph, Vec<Shape>) {
 }
 
 /// In the order of the source, messages without a place last.
-fn sort(diagnostics: &mut [Diagnostic]) {
+pub(super) fn sort(diagnostics: &mut [Diagnostic]) {
     let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| (label.span.file, label.span.start));
     diagnostics.sort_by_key(|diagnostic| (place(diagnostic).is_none(), place(diagnostic)));
 }

@@ -104,8 +104,16 @@ pub fn compile_within(source: Source, overrides: &[Override], budget: &Budget) -
 /// # Errors
 /// What is wrong with it, and the sources into which that points.
 pub fn read(path: &Path) -> Result<(SourceMap, FileId), (SourceMap, Diagnostic)> {
+    read_within(path, &Budget::new(&Limits::default()))
+}
+
+/// The same within other limits than the default ones.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_within(path: &Path, budget: &Budget) -> Result<(SourceMap, FileId), (SourceMap, Diagnostic)> {
     let mut sources = SourceMap::default();
-    match load::load(&mut sources, path, &Budget::new(&Limits::default())) {
+    match load::load(&mut sources, path, budget) {
         Ok(file) => Ok((sources, file)),
         Err(diagnostic) => Err((sources, diagnostic)),
     }
