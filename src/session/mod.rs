@@ -35,6 +35,7 @@ use crate::program::scene::Scene;
 use crate::syntax;
 use crate::syntax::ast::Module;
 
+pub use crate::session::backend::Within;
 pub use crate::session::backend::backend;
 pub use crate::session::load::bytes;
 pub use crate::session::save::cannot_write;
