@@ -92,6 +92,7 @@ pub fn resolve_functions(
     }
     let mut found = Functions::default();
     let mut faults = Vec::new();
+    let mut nodes = 0;
     for (index, statement) in program.files[0].module.statements.iter().enumerate() {
         if only.is_some_and(|only| defined_name(statement).is_none_or(|name| name.text != only)) {
             continue;
@@ -121,7 +122,13 @@ pub fn resolve_functions(
             }
         };
         match function(&lowerer.graph, &lowered, &values, &parameters, statement) {
-            Ok(Some(function)) => found.functions.push(function),
+            Ok(Some(function)) => {
+                // Each has a copy of what it shares with others.
+                nodes += function.graph.len();
+                let afforded = context.budget.nodes(nodes).and_then(|()| context.budget.time());
+                afforded.map_err(|exceeded| vec![Diagnostic::from(exceeded).at(statement.span, "up to here")])?;
+                found.functions.push(function);
+            }
             Ok(None) => {}
             Err(diagnostic) => found.refused.push(refuse(vec![diagnostic])),
         }
@@ -203,11 +210,11 @@ fn function(
     parameters: &[Parameter],
     statement: &Statement,
 ) -> Result<Option<Function>, Diagnostic> {
-    let used = inputs_of(graph, values);
+    let used: HashSet<String> = inputs_of(graph, values).into_iter().collect();
     let mut variables: Vec<String> = lowered.arguments.iter().map(|param| param.name.text.clone()).collect();
     let name = Name { text: lowered.name.clone(), span: lowered.span };
     let mut inputs: Vec<String> = variables.iter().map(|variable| input(&name, variable)).collect();
-    for name in COORDINATES.iter().chain([&TIME]).filter(|name| used.iter().any(|other| other == *name)) {
+    for name in COORDINATES.iter().chain([&TIME]).filter(|name| used.contains(**name)) {
         if inputs.iter().any(|input| input == name) {
             continue;
         }
