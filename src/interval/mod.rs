@@ -23,6 +23,7 @@ mod decorated_sets;
 mod decoration;
 mod elementary;
 mod exact;
+mod exchange;
 mod integer;
 mod linear;
 mod linear_functions;

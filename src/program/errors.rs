@@ -56,6 +56,11 @@ pub(super) fn import_failed(path: &str, span: Span, reason: &str) -> Diagnostic 
     Diagnostic::error(code::CANNOT_IMPORT, format!("cannot import \"{path}\": {reason}")).at(span, "imported here")
 }
 
+/// A function that a caller could not give both values of one name.
+pub(super) fn ambiguous_variable(title: String, span: Span) -> Diagnostic {
+    Diagnostic::error(code::DUPLICATE_NAME, title).at(span, "both are used here")
+}
+
 pub(super) fn same_parameter(name: &str, span: Span, first: Span) -> Diagnostic {
     Diagnostic::error(code::DUPLICATE_NAME, format!("parameter `{name}` is declared in two files"))
         .at(span, "declared here")
@@ -142,10 +147,15 @@ pub(super) fn component_index(length: usize, span: Span) -> Diagnostic {
         .help("the number must be written out or a constant")
 }
 
-pub(super) fn too_much_expansion(span: Span) -> Diagnostic {
+pub(super) fn too_much_expansion(span: Span, steps: usize) -> Diagnostic {
     Diagnostic::error(code::TOO_MUCH_EXPANSION, "this formula grows too large when its functions are inlined")
-        .at(span, "given up here")
+        .at(span, format!("given up here after {steps} steps"))
         .help("functions that call functions several times multiply; name a shared part with `let`")
+}
+
+pub(super) fn too_much_text(path: &str, span: Span, allowed: usize) -> Diagnostic {
+    let title = format!("with `{path}` there is more text than allowed: {} KiB in all", allowed >> 10);
+    Diagnostic::error(code::FILE_TOO_LARGE, title).at(span, "not read")
 }
 
 pub(super) fn too_deep(span: Span) -> Diagnostic {

@@ -1,6 +1,6 @@
 //! What a parsed file means: names, kinds, modules and the standard library; AST to graph and [`scene::Scene`].
 //!
-//! [`resolve()`] and [`resolve_expression`] are the ways in. In the order of the work:
+//! [`resolve()`], [`resolve_expression`] and [`resolve_functions`] are the ways in. In the order of the work:
 //!
 //! - `import`, `stdlib`, `names`, `scan`: all files, what each name means, and an order of evaluation;
 //! - `values`, `lower`, `algebra`, `call`, `exponent`: expressions to graph values, with every function inlined;
@@ -14,6 +14,7 @@ mod domain;
 mod enclose;
 mod errors;
 mod exponent;
+mod export;
 mod import;
 mod lower;
 mod names;
@@ -27,6 +28,11 @@ mod values;
 pub use builtins::BUILTINS;
 pub use builtins::Builtin;
 pub use builtins::TIME;
+pub use export::Function;
+pub use export::Functions;
+pub use export::Refused;
+pub use export::resolve_functions;
+pub use export::with_expression;
 pub use import::Embedded;
 pub use import::FileSystem;
 pub use import::Importer;

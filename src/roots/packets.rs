@@ -65,6 +65,8 @@ impl Compiled {
         let distance = graph.sub(x, middle);
         let change = graph.mul(problem.slope, distance);
         let centred = graph.add(at_middle, change);
+        // Outputs of the graph's own come first.
+        let others = graph.outputs().len();
         let wanted = [problem.f, problem.slope, at_middle, newton, centred];
         for (index, &value) in wanted.iter().chain(&problem.factors).enumerate() {
             graph.add_output(index.to_string(), value);
@@ -78,7 +80,7 @@ impl Compiled {
         let (graph, _) = passes::run(&graph, &ranges);
         let promises = graph.variables().iter().cloned().zip(known).filter_map(|(name, range)| Some((name, range?)));
         let promises = promises.collect();
-        let results: Vec<Value> = graph.outputs().iter().map(|&(_, value)| value).collect();
+        let results: Vec<Value> = graph.outputs()[others..].iter().map(|&(_, value)| value).collect();
         let mut outputs = vec![
             Output::Verdict(results[0]),
             Output::Verdict(results[1]),
