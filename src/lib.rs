@@ -245,7 +245,7 @@
 //! | 2 | [`program`]: names, kinds, modules, the standard library, scenes; [`passes`]: folding and rewriting |
 //! | 3 | [`mod@derive`]: gradients, formulas along rays, interval and affine programs of lanes |
 //! | 4 | [`kernel`]: what consumers call: packets of boxes in, enclosures and verdicts out |
-//! | 5 | [`interpret`]: the reference kernel; [`codegen`]: the compiled ones; [`render`]: pictures and their proofs; [`arrange`]: arrangements of curves; [`roots`]: zeros along lines |
+//! | 5 | [`interpret`]: the reference kernel; [`codegen`]: the compiled ones; [`render`]: pictures and their proofs; [`arrange`]: arrangements of curves; [`roots`]: all zeros of a function |
 //! | 6 | [`session`]: source to scene in one function, and the choice of the backend; [`accuracy`]: what accuracy costs |
 //! | 7 | [`library`]: what other programs call; [`repl`]: calculating with boxes interactively |
 //! | 8 | [`mod@build`]: kernels ahead of time |
@@ -280,6 +280,7 @@ pub mod passes;
 pub mod program;
 pub mod render;
 pub mod repl;
+pub mod roots;
 pub mod session;
 pub mod syntax;
 
