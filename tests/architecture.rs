@@ -11,6 +11,7 @@ const LAYERS: &[(&str, u8)] = &[
     ("interval", 0),
     ("envelope", 1),
     ("graph", 1),
+    ("limits", 1),
     ("syntax", 1),
     ("program", 2),
     ("passes", 2),

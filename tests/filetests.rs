@@ -15,6 +15,8 @@ use imp::diagnostic::render;
 use imp::graph;
 use imp::graph::Graph;
 use imp::interval::Interval;
+use imp::limits::Budget;
+use imp::limits::Limits;
 use imp::passes;
 use imp::program;
 use imp::program::Context;
@@ -132,7 +134,7 @@ fn syntax() {
 struct Files(HashMap<String, String>);
 
 impl Importer for Files {
-    fn read(&self, path: &Path) -> io::Result<String> {
+    fn read(&self, path: &Path, _: usize) -> io::Result<String> {
         self.0.get(&*path.to_string_lossy()).cloned().ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 
@@ -158,7 +160,9 @@ fn resolved(input: &str) -> String {
     let files = parts.map(|part| part.split_once('\n').unwrap()).map(|(name, text)| (name.to_owned(), text.to_owned()));
     let importer = Files(files.collect());
     let differentiate = |graph: &mut Graph, f, by| derivative(graph, f, by);
-    let context = Context { importer: &importer, differentiate: &differentiate, overrides: &overrides };
+    let budget = Budget::new(&Limits::default());
+    let context =
+        Context { importer: &importer, differentiate: &differentiate, overrides: &overrides, budget: &budget };
     let mut sources = SourceMap::default();
     let file = sources.add("main.imp", main);
     let (scene, diagnostics) = program::resolve(&mut sources, file, syntax::parse(file, main), &context);

@@ -10,6 +10,8 @@ use imp::diagnostic::render;
 use imp::graph::enclose;
 use imp::interval::Decorated;
 use imp::interval::Interval;
+use imp::limits::Budget;
+use imp::limits::Limits;
 use imp::program;
 use imp::program::Context;
 use imp::program::Embedded;
@@ -22,15 +24,20 @@ use imp::syntax::ast::Module;
 
 const EMBEDDED: &dyn Importer = &Embedded;
 
-fn context(importer: &dyn Importer) -> Context<'_> {
-    Context { importer, differentiate: &derivative, overrides: &[] }
+fn context<'a>(importer: &'a dyn Importer, budget: &'a Budget) -> Context<'a> {
+    Context { importer, differentiate: &derivative, overrides: &[], budget }
+}
+
+fn budget() -> Budget {
+    Budget::new(&Limits::default())
 }
 
 /// Parses and resolves a file; the messages as text if there are any.
 fn scene_of(name: &str, text: &str, importer: &dyn Importer) -> Result<Scene, String> {
     let mut sources = SourceMap::default();
     let file = sources.add(name, text);
-    let (scene, diagnostics) = program::resolve(&mut sources, file, syntax::parse(file, text), &context(importer));
+    let (scene, diagnostics) =
+        program::resolve(&mut sources, file, syntax::parse(file, text), &context(importer, &budget()));
     match scene {
         Some(scene) if diagnostics.is_empty() => Ok(scene),
         _ => Err(render(&sources, &diagnostics, false)),
@@ -43,7 +50,8 @@ fn value(text: &str, [x, y, z]: [f64; 3]) -> Result<Interval, String> {
     let file = sources.add("expression", text);
     let expr = syntax::parse_expression(file, text).map_err(|found| render(&sources, &found, false))?;
     let names = ["x", "y", "z"];
-    let resolved = program::resolve_expression(&mut sources, &expr, &names, Module::default(), &context(EMBEDDED));
+    let resolved =
+        program::resolve_expression(&mut sources, &expr, &names, Module::default(), &context(EMBEDDED, &budget()));
     let resolved = resolved.map_err(|found| render(&sources, &found, false))?;
     let point: HashMap<&str, f64> = names.into_iter().zip([x, y, z]).collect();
     let input = |name: &String| Decorated::new(Interval::point(point[name.as_str()]));
@@ -374,7 +382,8 @@ fn expressions_see_definitions() {
     let text = "f(e) + sphere(2)";
     let file = sources.add("expression", text);
     let expr = syntax::parse_expression(file, text).unwrap();
-    let resolved = program::resolve_expression(&mut sources, &expr, &["e", "sphere"], definitions, &context(EMBEDDED));
+    let resolved =
+        program::resolve_expression(&mut sources, &expr, &["e", "sphere"], definitions, &context(EMBEDDED, &budget()));
     let resolved = resolved.unwrap();
     assert_eq!(resolved.graph.variables(), ["k", "e", "sphere"]);
     assert_eq!((resolved.parameters[0].name.as_str(), resolved.parameters[0].value), ("k", Interval::point(3.0)));
@@ -386,7 +395,7 @@ fn constants_from_outside_are_enclosed() {
         let mut sources = SourceMap::default();
         let file = sources.add("--set", text);
         let expr = syntax::parse_expression(file, text).unwrap();
-        program::resolve_constant(&mut sources, &expr, &context(EMBEDDED)).map_err(|found| found[0].code)
+        program::resolve_constant(&mut sources, &expr, &context(EMBEDDED, &budget())).map_err(|found| found[0].code)
     };
     assert!(constant("pi/2").unwrap().contains(std::f64::consts::FRAC_PI_2));
     let tenth = constant("0.1").unwrap();

@@ -13,6 +13,8 @@ use imp::graph::enclose;
 use imp::interval::Decorated;
 use imp::interval::Decoration;
 use imp::interval::Interval;
+use imp::limits::Budget;
+use imp::limits::Limits;
 use imp::passes::zero_set::Piece;
 use imp::passes::zero_set::zero_set;
 use imp::program;
@@ -24,7 +26,8 @@ use imp::syntax;
 fn scene(text: &str) -> Scene {
     let mut sources = SourceMap::default();
     let file = sources.add("scene", text);
-    let context = Context { importer: &Embedded, differentiate: &derivative, overrides: &[] };
+    let budget = Budget::new(&Limits::default());
+    let context = Context { importer: &Embedded, differentiate: &derivative, overrides: &[], budget: &budget };
     let (scene, diagnostics) = program::resolve(&mut sources, file, syntax::parse(file, text), &context);
     match scene {
         Some(scene) if diagnostics.is_empty() => scene,

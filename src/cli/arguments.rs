@@ -8,7 +8,9 @@ use clap::Subcommand;
 use clap::ValueEnum;
 
 use crate::accuracy::Selection;
+use crate::build::Kernel;
 use crate::cli::values;
+use crate::codegen::object::Level;
 use crate::derive::Arithmetic;
 use crate::derive::Precision;
 use crate::derive::Rounding;
@@ -70,6 +72,8 @@ pub enum Command {
     Eval(EvalArguments),
     /// Measure what accuracy costs: a scene at many levels of accuracy, or an expression in every arithmetic.
     Cost(CostArguments),
+    /// Compile functions for other programs: an object, a static library, a C header, Rust functions.
+    Build(BuildArguments),
     /// Calculate with boxes interactively; `:help` there says how.
     Repl,
 }
@@ -263,6 +267,97 @@ pub struct EmitArguments {
     /// What the kernel of the stages clif and asm computes on.
     #[arg(long, value_enum, default_value_t = KernelArgument::Interval)]
     pub arithmetic: KernelArgument,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct BuildArguments {
+    /// Definitions; its name is what symbols begin with.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Write an object.
+    #[arg(short, long, value_name = "OUT.o")]
+    pub output: Option<PathBuf>,
+    /// Write a header for C and C++.
+    #[arg(long, value_name = "OUT.h")]
+    pub header: Option<PathBuf>,
+    /// Write Rust functions, in a file that needs no crate.
+    #[arg(long, value_name = "OUT.rs")]
+    pub rust: Option<PathBuf>,
+    /// Write a static library with the object in it.
+    #[arg(long = "static", value_name = "libOUT.a")]
+    pub archive: Option<PathBuf>,
+    /// What to make of each function [default: value,gradient,interval,interval_gradient].
+    #[arg(long, value_enum, value_name = "KERNEL,...", value_delimiter = ',')]
+    pub kernels: Vec<ExportArgument>,
+    /// Names of functions [default: all that take numbers].
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub functions: Vec<String>,
+    /// Format of all numbers.
+    #[arg(long, value_enum, default_value_t = PrecisionArgument::F64)]
+    pub precision: PrecisionArgument,
+    /// Levels of x86-64, of which the object chooses the best that the processor has [default: all].
+    #[arg(long, value_enum, value_name = "LEVEL,...", value_delimiter = ',')]
+    pub levels: Vec<LevelArgument>,
+    /// Processor, under Linux [default: this machine's].
+    #[arg(long, value_enum)]
+    pub target: Option<TargetArgument>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum ExportArgument {
+    /// Values at points.
+    Value,
+    /// Values and partial derivatives at points.
+    Gradient,
+    /// Enclosures over boxes.
+    Interval,
+    /// Enclosures of values and partial derivatives over boxes.
+    IntervalGradient,
+    /// Enclosures over boxes with affine forms.
+    Affine,
+    /// The same of partial derivatives too.
+    AffineGradient,
+}
+
+impl From<ExportArgument> for Kernel {
+    fn from(kernel: ExportArgument) -> Self {
+        match kernel {
+            ExportArgument::Value => Kernel::Value,
+            ExportArgument::Gradient => Kernel::Gradient,
+            ExportArgument::Interval => Kernel::Interval,
+            ExportArgument::IntervalGradient => Kernel::IntervalGradient,
+            ExportArgument::Affine => Kernel::Affine,
+            ExportArgument::AffineGradient => Kernel::AffineGradient,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum LevelArgument {
+    /// SSE4.2: any processor since 2009.
+    V2,
+    /// AVX2 and FMA.
+    V3,
+    /// AVX-512.
+    V4,
+}
+
+impl From<LevelArgument> for Level {
+    fn from(level: LevelArgument) -> Self {
+        match level {
+            LevelArgument::V2 => Level::V2,
+            LevelArgument::V3 => Level::V3,
+            LevelArgument::V4 => Level::V4,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TargetArgument {
+    #[value(name = "x86_64")]
+    X86_64,
+    Aarch64,
 }
 
 #[derive(Debug, clap::Args)]

@@ -7,6 +7,8 @@ use std::io::Write;
 use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::SourceMap;
+use crate::diagnostic::code;
+use crate::library::Error;
 use crate::session::expression::Messages;
 
 /// Exit status for a mistake of the user's.
@@ -62,6 +64,16 @@ impl From<Diagnostic> for Failure {
 impl From<Messages> for Failure {
     fn from(messages: Messages) -> Self {
         Self::new(messages.sources, messages.diagnostics)
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Source(report) => Self { groups: vec![report.into_parts()] },
+            Error::Other(diagnostic) => diagnostic.into(),
+            other => Diagnostic::error(code::BAD_OPTION, other.to_string()).into(),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod arguments;
 mod arrange;
+mod build;
 mod cost;
 mod eval;
 mod failure;
@@ -62,6 +63,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Repl => Ok(repl::run()?),
         Command::Arrange(arguments) => arrange::arrange(arguments),
         Command::Cost(arguments) => cost::cost(arguments),
+        Command::Build(arguments) => build::build(arguments),
     }
 }
 

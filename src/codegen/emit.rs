@@ -17,6 +17,7 @@ use cranelift_codegen::ir::Value;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::types;
+use cranelift_codegen::isa::Builder;
 use cranelift_codegen::isa::CallConv;
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::isa::TargetFrontendConfig;
@@ -24,6 +25,8 @@ use cranelift_codegen::settings;
 use cranelift_codegen::settings::Configurable;
 use cranelift_frontend::FunctionBuilder;
 use cranelift_frontend::FunctionBuilderContext;
+use cranelift_module::FuncId;
+use cranelift_module::ModuleReloc;
 
 use crate::derive::LaneProgram;
 use crate::derive::Precision;
@@ -52,24 +55,62 @@ const MAX_OPERATIONS: usize = 400_000;
 /// Rust starts.
 const MAX_FRAME: u32 = 1 << 20;
 
-/// The machine code of a program: the function and its constants, with nothing to relocate.
+/// What code is made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Machine {
+    /// This machine, in this process.
+    Host,
+    /// x86-64 with SSE4.2 in 128-bit registers and without fused operations, for which the C library's `fma` is called.
+    Sse42,
+    /// x86-64 with AVX2 and FMA, in the encoding that `widen` reads.
+    Avx2,
+    /// 64-bit ARM with what every such processor has.
+    Aarch64,
+}
+
+/// A compiled program: the function, followed by its constants.
+pub struct Code {
+    pub bytes: Vec<u8>,
+    /// Calls of the C library; none where the machine has fused operations.
+    pub relocations: Vec<ModuleReloc>,
+    /// Bytes of stack.
+    pub frame: u32,
+}
+
+/// The machine code of a program that calls nothing: the function and its constants, with nothing to relocate.
 ///
 /// # Errors
 /// If the program is too large (`KERNEL_TOO_LARGE`), or for a fault of ours.
 pub fn machine_code(program: &LaneProgram, isa: &OwnedTargetIsa, stride: usize) -> Result<Vec<u8>, Diagnostic> {
+    let code = compile(program, isa, stride)?;
+    if !code.relocations.is_empty() {
+        return Err(internal(&"a kernel calls a function"));
+    }
+    Ok(code.bytes)
+}
+
+/// Compiles a program for any machine.
+///
+/// # Errors
+/// As for [`machine_code`].
+pub fn compile(program: &LaneProgram, isa: &OwnedTargetIsa, stride: usize) -> Result<Code, Diagnostic> {
     if program.ops.len() > MAX_OPERATIONS {
         return Err(too_large(program));
     }
     let mut context = Context::new();
     function(program, isa.frontend_config(), stride, &mut context);
-    let code = context.compile(&**isa, &mut Default::default()).map_err(|error| internal(&error.inner))?;
-    if code.buffer.frame_layout().is_some_and(|frame| frame.frame_to_fp_offset > MAX_FRAME) {
+    context.compile(&**isa, &mut Default::default()).map_err(|error| internal(&error.inner))?;
+    let code = context.compiled_code().ok_or_else(|| internal(&"no code"))?;
+    let frame = code.buffer.frame_layout().map_or(0, |frame| frame.frame_to_fp_offset);
+    if frame > MAX_FRAME {
         return Err(too_large(program));
     }
-    if !code.buffer.relocs().is_empty() {
-        return Err(internal(&"a kernel calls a function"));
-    }
-    Ok(code.code_buffer().to_vec())
+    let bytes = code.code_buffer().to_vec();
+    // Only labels within the function itself would name it.
+    let own = FuncId::from_u32(0);
+    let relocations = code.buffer.relocs().iter();
+    let relocations = relocations.map(|reloc| ModuleReloc::from_mach_reloc(reloc, &context.func, own)).collect();
+    Ok(Code { bytes, relocations, frame })
 }
 
 /// The text of a compiled program.
@@ -95,7 +136,7 @@ pub fn internal(error: &dyn std::fmt::Display) -> Diagnostic {
 }
 
 /// A program that is not worth compiling, or needs too much stack; the interpreter takes it.
-fn too_large(program: &LaneProgram) -> Diagnostic {
+pub fn too_large(program: &LaneProgram) -> Diagnostic {
     let title = format!("this formula is too large to be compiled: {} operations on vectors", program.ops.len());
     Diagnostic::error(code::KERNEL_TOO_LARGE, title)
 }
@@ -103,35 +144,65 @@ fn too_large(program: &LaneProgram) -> Diagnostic {
 /// The host's instruction set with the settings of this program; made once for each register allocator.
 pub fn isa(program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
     static MADE: [OnceLock<OwnedTargetIsa>; 2] = [OnceLock::new(), OnceLock::new()];
-    let simple = program.ops.len() > LONG || most_live(program) > LIVE_LIMIT;
-    let made = &MADE[usize::from(simple)];
+    let made = &MADE[usize::from(is_simple(program))];
     if let Some(isa) = made.get() {
         return Ok(isa.clone());
     }
-    let isa = host(if simple { "single_pass" } else { "backtracking" })?;
+    let isa = isa_for(Machine::Host, program)?;
     Ok(made.get_or_init(|| isa).clone())
 }
 
-fn host(allocator: &str) -> Result<OwnedTargetIsa, Diagnostic> {
+/// A machine's instruction set with the settings of this program.
+pub fn isa_for(machine: Machine, program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
+    let pic = if machine == Machine::Host { "false" } else { "true" };
+    let allocator = if is_simple(program) { "single_pass" } else { "backtracking" };
+    instructions(machine, &[("regalloc_algorithm", allocator), ("is_pic", pic)])
+}
+
+/// A machine's instruction set for the code around kernels: it may take much stack, so it touches each of its pages in turn
+/// and cannot pass over the page that guards the stack's end.
+pub fn isa_around(machine: Machine) -> Result<OwnedTargetIsa, Diagnostic> {
+    instructions(machine, &[("is_pic", "true"), ("enable_probestack", "true"), ("probestack_strategy", "inline")])
+}
+
+fn instructions(machine: Machine, own: &[(&str, &str)]) -> Result<OwnedTargetIsa, Diagnostic> {
     let mut flags = settings::builder();
     let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
-    for (name, value) in [
-        ("opt_level", "none"),
-        ("regalloc_algorithm", allocator),
-        ("enable_verifier", verifier),
-        ("is_pic", "false"),
-        ("use_colocated_libcalls", "false"),
-    ] {
+    let common = [("opt_level", "none"), ("enable_verifier", verifier), ("use_colocated_libcalls", "false")];
+    for &(name, value) in common.iter().chain(own) {
         flags.set(name, value).map_err(|error| internal(&error))?;
     }
-    let mut host = cranelift_native::builder().map_err(|error| internal(&error))?;
+    let mut builder = match machine {
+        Machine::Host => cranelift_native::builder().map_err(|error| internal(&error))?,
+        Machine::Sse42 | Machine::Avx2 => by_name("x86_64-unknown-linux-gnu")?,
+        Machine::Aarch64 => by_name("aarch64-unknown-linux-gnu")?,
+    };
+    const SSE42: &[&str] = &["has_sse3", "has_ssse3", "has_sse41", "has_sse42", "has_popcnt"];
+    const AVX2: &[&str] = &["has_avx", "has_avx2", "has_fma", "has_bmi1", "has_bmi2", "has_lzcnt"];
     // EVEX encodings have no place in `widen`, and 128-bit kernels gain nothing by them.
-    for name in ["has_avx512f", "has_avx512vl", "has_avx512dq", "has_avx512bitalg", "has_avx512vbmi"] {
-        if cfg!(target_arch = "x86_64") {
-            host.set(name, "false").map_err(|error| internal(&error))?;
-        }
+    const AVX512: &[&str] = &["has_avx512f", "has_avx512vl", "has_avx512dq", "has_avx512bitalg", "has_avx512vbmi"];
+    let (with, without): (&[&[&str]], &[&str]) = match machine {
+        Machine::Host if cfg!(target_arch = "x86_64") => (&[], AVX512),
+        Machine::Host | Machine::Aarch64 => (&[], &[]),
+        Machine::Sse42 => (&[SSE42], &[]),
+        Machine::Avx2 => (&[SSE42, AVX2], &[]),
+    };
+    for name in with.iter().copied().flatten() {
+        builder.enable(name).map_err(|error| internal(&error))?;
     }
-    host.finish(settings::Flags::new(flags)).map_err(|error| internal(&error))
+    for name in without {
+        builder.set(name, "false").map_err(|error| internal(&error))?;
+    }
+    builder.finish(settings::Flags::new(flags)).map_err(|error| internal(&error))
+}
+
+fn by_name(triple: &str) -> Result<Builder, Diagnostic> {
+    cranelift_codegen::isa::lookup_by_name(triple).map_err(|error| internal(&error))
+}
+
+/// Whether a program is for the register allocator that is linear in its length.
+fn is_simple(program: &LaneProgram) -> bool {
+    program.ops.len() > LONG || most_live(program) > LIVE_LIMIT
 }
 
 /// The most lane values that are live at one point.

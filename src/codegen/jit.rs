@@ -13,6 +13,7 @@ use cranelift_module::default_libcall_names;
 use crate::codegen::emit;
 use crate::codegen::rounding;
 use crate::codegen::widen;
+use crate::codegen::widen::Registers;
 use crate::derive::LaneProgram;
 use crate::derive::Precision;
 use crate::derive::Rounding;
@@ -93,9 +94,9 @@ fn define(
     program: &LaneProgram,
     width: Width,
 ) -> Result<rounding::Entry, Diagnostic> {
-    let wide = match width == Width::Widest && widen::available() {
-        true => widen::widen(&emit::machine_code(program, isa, 2 * emit::VECTOR)?),
-        false => None,
+    let wide = match Registers::widest().filter(|_| width == Width::Widest) {
+        Some(registers) => widen::widen(&emit::machine_code(program, isa, registers.bytes())?, registers),
+        None => None,
     };
     let (bytes, start) = match wide {
         Some(wide) => (wide.bytes, wide.entry),

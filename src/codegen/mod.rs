@@ -2,6 +2,7 @@
 
 mod emit;
 mod jit;
+pub mod object;
 mod rounding;
 mod widen;
 

@@ -25,7 +25,38 @@ use iced_x86::Register;
 const OLD: u64 = 0x1_0000_0000;
 const NEW: u64 = 0x2_0000_0000;
 
-const WIDE: usize = 32;
+/// Bytes of a register in the old code.
+const NARROW: usize = 16;
+
+/// The registers that code is re-encoded for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Registers {
+    /// 256 bits: AVX2.
+    Ymm,
+    /// 512 bits: AVX-512.
+    Zmm,
+}
+
+impl Registers {
+    /// The widest that this machine has and the pass knows how to use.
+    #[cfg(target_arch = "x86_64")]
+    pub fn widest() -> Option<Self> {
+        std::arch::is_x86_feature_detected!("avx2").then_some(Self::Ymm)
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    pub fn widest() -> Option<Self> {
+        None
+    }
+
+    /// The size of one register: what one pass of the loop covers.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::Ymm => 32,
+            Self::Zmm => 64,
+        }
+    }
+}
 
 /// Re-encoded code: constants first, then the function.
 pub struct Wide {
@@ -34,20 +65,12 @@ pub struct Wide {
     pub entry: usize,
 }
 
-/// Whether the machine runs 256-bit integer instructions.
-#[cfg(target_arch = "x86_64")]
-pub fn available() -> bool {
-    std::arch::is_x86_feature_detected!("avx2")
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-pub fn available() -> bool {
-    false
-}
-
-/// Widens a kernel emitted with a stride of 32 bytes. `code` is the function followed by its constants; `None` if it holds
-/// anything that is not known to be lane-wise.
-pub fn widen(code: &[u8]) -> Option<Wide> {
+/// Widens a kernel emitted with a stride of `registers.bytes()`. `code` is the function followed by its constants; `None`
+/// if it holds anything that is not known to be lane-wise.
+pub fn widen(code: &[u8], registers: Registers) -> Option<Wide> {
+    if registers == Registers::Zmm {
+        return None;
+    }
     let instructions = decode(code)?;
     let mut pool = Pool { code, offsets: BTreeMap::new(), bytes: Vec::new() };
     let mut wide = Vec::with_capacity(instructions.len() + 1);
@@ -96,7 +119,7 @@ struct Pool<'c> {
 impl Pool<'_> {
     fn doubled(&mut self, address: u64) -> Option<u64> {
         let old = usize::try_from(address.checked_sub(OLD)?).ok()?;
-        let vector = self.code.get(old..old + WIDE / 2)?;
+        let vector = self.code.get(old..old + NARROW)?;
         let new = *self.offsets.entry(old).or_insert_with(|| {
             let offset = self.bytes.len();
             self.bytes.extend_from_slice(vector);

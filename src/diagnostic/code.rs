@@ -82,6 +82,10 @@ codes! {
     TOO_MUCH_EXPANSION = "E0215";
     /// A variable of an expression that has no value.
     NO_VALUE = "E0216";
+    /// A formula that takes longer to compile than is allowed.
+    TOO_SLOW = "E0217";
+    /// A formula that is larger than is allowed, or becomes so on the way to machine code.
+    LARGER_THAN_ALLOWED = "E0218";
 
     /// Something that must be a constant and is not.
     NOT_CONSTANT = "E0301";

@@ -62,6 +62,7 @@ pub struct Graph {
     outputs: Vec<(String, Value)>,
     interned: HashMap<Node, Value>,
     constant_ids: HashMap<BigRational, u32>,
+    variable_ids: HashMap<String, u32>,
 }
 
 impl Graph {
@@ -105,14 +106,16 @@ impl Graph {
 
     /// The input of that name, added on its first use.
     pub fn var(&mut self, name: &str) -> Value {
-        let index = match self.variables.iter().position(|n| n == name) {
-            Some(index) => index,
+        let index = match self.variable_ids.get(name) {
+            Some(&index) => index,
             None => {
+                let index = self.variables.len() as u32;
                 self.variables.push(name.to_owned());
-                self.variables.len() - 1
+                self.variable_ids.insert(name.to_owned(), index);
+                index
             }
         };
-        self.push(Op::Var(index as u32), &[])
+        self.push(Op::Var(index), &[])
     }
 
     pub fn constant(&mut self, number: BigRational) -> Value {

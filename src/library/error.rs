@@ -42,6 +42,11 @@ impl Report {
         Self { sources, diagnostics }
     }
 
+    /// What [`Report::new`] takes.
+    pub(crate) fn into_parts(self) -> (SourceMap, Vec<Diagnostic>) {
+        (self.sources, self.diagnostics)
+    }
+
     /// The messages in the order of the source; there is at least one.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics

@@ -8,6 +8,7 @@ use crate::derive::Arithmetic;
 use crate::derive::Output;
 use crate::derive::Rounding;
 use crate::derive::Spec;
+use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Span;
 use crate::graph::Graph;
 use crate::graph::Value;
@@ -16,6 +17,8 @@ use crate::library::Error;
 use crate::library::IntervalKernel;
 use crate::library::PointKernel;
 use crate::library::kernel::Compile;
+use crate::limits::Budget;
+use crate::limits::Limits;
 use crate::passes;
 use crate::program;
 use crate::program::scene::Parameter;
@@ -25,7 +28,11 @@ use crate::program::scene::Parameter;
 pub struct Function {
     resolved: Arc<program::Function>,
     outputs: Arc<[String]>,
+    limits: Limits,
 }
+
+/// The input of a kernel of no variables.
+const UNUSED: &str = "nothing";
 
 /// How a function is compiled.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,12 +66,12 @@ impl Options {
 }
 
 impl Function {
-    pub(super) fn new(resolved: program::Function) -> Self {
+    pub(super) fn new(resolved: program::Function, limits: Limits) -> Self {
         let outputs = match resolved.values.len() {
             1 => vec![resolved.name.clone()],
             n => (1..=n).map(|i| format!("{}[{i}]", resolved.name)).collect(),
         };
-        Self { resolved: Arc::new(resolved), outputs: outputs.into() }
+        Self { resolved: Arc::new(resolved), outputs: outputs.into(), limits }
     }
 
     /// As it is written in the source.
@@ -173,8 +180,13 @@ impl Function {
         Ok(Spec { rounding: Rounding::Nearest, ..spec })
     }
 
+    /// What each stage after the text may take.
+    pub(super) fn budget(&self) -> Budget {
+        Budget::new(&self.limits)
+    }
+
     fn spec(&self, options: &Options, arithmetic: Arithmetic, output: fn(Value) -> Output) -> Result<Spec, Error> {
-        let resolved = &self.resolved;
+        let (resolved, budget) = (&self.resolved, &self.budget());
         if let Some((name, _)) = options.domain.iter().find(|(name, _)| !resolved.variables.contains(name)) {
             return Err(Error::UnknownVariable { name: name.clone(), known: resolved.variables.clone() });
         }
@@ -197,13 +209,19 @@ impl Function {
         for (index, value) in values.iter().enumerate() {
             graph.add_output(index.to_string(), *value);
         }
-        let (mut graph, _) = passes::run(&graph, &ranges);
+        let (mut graph, _) = passes::run_within(&graph, &ranges, budget).map_err(Diagnostic::from)?;
         let outputs = graph.outputs().iter().map(|&(_, value)| output(value)).collect();
         let domain = resolved.inputs.iter().zip(&ranges).filter(|(_, range)| !range.is_entire());
         let domain = domain.map(|(name, range)| (graph.var(name), *range)).collect();
+        let mut inputs = resolved.inputs.clone();
+        if inputs.is_empty() {
+            // A constant has a row of inputs, too: kernels count rows by their inputs.
+            inputs.push(UNUSED.to_owned());
+            graph.var(UNUSED);
+        }
         let promised = resolved.parameters.iter().filter_map(|p| Some((p.name.clone(), p.range?)));
         Ok(Spec {
-            inputs: resolved.inputs.clone(),
+            inputs,
             uniforms: resolved.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             outputs,
             domain,

@@ -19,5 +19,6 @@ pub use interval_kernel::Columns;
 pub use interval_kernel::IntervalKernel;
 pub use kernel::Compile;
 pub use point_kernel::PointKernel;
+pub use program::Loader;
 pub use program::Program;
 pub use program::Refused;

@@ -15,6 +15,8 @@ use crate::diagnostic::SourceMap;
 use crate::library::Error;
 use crate::library::Function;
 use crate::library::Report;
+use crate::limits::Budget;
+use crate::limits::Limits;
 use crate::program;
 use crate::program::Context;
 use crate::program::Importer;
@@ -34,8 +36,58 @@ pub struct Program {
     refused: Arc<[Refused]>,
 }
 
+/// How texts are read: their name in messages, and what they may cost.
+///
+/// ```
+/// use imp::Limits;
+/// use imp::Loader;
+///
+/// let strangers = Loader::new("form field", Limits::untrusted());
+/// assert!(strangers.parse("fn f(x) = x^2").is_ok());
+/// let refused = strangers.parse(&"(".repeat(100_000)).unwrap_err();
+/// assert!(refused.to_string().contains("larger than allowed"));
+/// ```
+#[derive(Debug, Clone)]
+pub struct Loader {
+    name: String,
+    limits: Limits,
+}
+
+impl Loader {
+    pub fn new(name: impl Into<String>, limits: Limits) -> Self {
+        Self { name: name.into(), limits }
+    }
+
+    /// Reads a text, which may import files of the standard library alone.
+    ///
+    /// # Errors
+    /// [`Error::Source`] with all of its mistakes, or with the limit that it exceeds.
+    pub fn parse(&self, text: &str) -> Result<Program, Error> {
+        let budget = Budget::new(&self.limits);
+        if let Err(exceeded) = budget.source(text.len()) {
+            return Err(Error::Source(Report::new(SourceMap::default(), vec![exceeded.into()])));
+        }
+        let mut sources = SourceMap::default();
+        let file = sources.add(self.name.as_str(), text);
+        Program::new(None, sources, file, &budget)
+    }
+
+    /// Reads a file; its imports are relative to it.
+    ///
+    /// # Errors
+    /// As [`Loader::parse`], and if it cannot be read.
+    pub fn open(&self, path: impl AsRef<Path>) -> Result<Program, Error> {
+        let (path, budget) = (path.as_ref(), Budget::new(&self.limits));
+        match session::read_within(path, &budget) {
+            Ok((sources, file)) => Program::new(Some(path.to_owned()), sources, file, &budget),
+            Err((sources, diagnostic)) => Err(Error::Source(Report::new(sources, vec![diagnostic]))),
+        }
+    }
+}
+
 /// What a program is made from.
 struct Parsed {
+    limits: Limits,
     /// Of the file; a text has none.
     path: Option<PathBuf>,
     sources: SourceMap,
@@ -64,9 +116,7 @@ impl Program {
     /// # Errors
     /// As [`Program::parse`].
     pub fn named(name: &str, text: &str) -> Result<Self, Error> {
-        let mut sources = SourceMap::default();
-        let file = sources.add(name, text);
-        Self::new(None, sources, file)
+        Loader::new(name, Limits::default()).parse(text)
     }
 
     /// Reads a file; its imports are relative to it.
@@ -74,25 +124,21 @@ impl Program {
     /// # Errors
     /// As [`Program::parse`], and if it cannot be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref();
-        match session::read(path) {
-            Ok((sources, file)) => Self::new(Some(path.to_owned()), sources, file),
-            Err((sources, diagnostic)) => Err(Error::Source(Report::new(sources, vec![diagnostic]))),
-        }
+        Loader::new("", Limits::default()).open(path)
     }
 
-    fn new(path: Option<PathBuf>, sources: SourceMap, file: FileId) -> Result<Self, Error> {
+    fn new(path: Option<PathBuf>, sources: SourceMap, file: FileId, budget: &Budget) -> Result<Self, Error> {
         let text = Arc::clone(&sources.get(file).text);
         let (module, faults) = syntax::parse(file, &text);
-        let mut parsed = Parsed { path, sources, file, module };
+        let mut parsed = Parsed { limits: *budget.limits(), path, sources, file, module };
         let mut sources = parsed.sources.clone();
-        let found = parsed.resolve(&mut sources, (parsed.module.clone(), faults), None);
+        let found = parsed.resolve(&mut sources, (parsed.module.clone(), faults), None, budget);
         // Imported files are known from here on.
         parsed.sources = sources;
         let found = found.map_err(|diagnostics| parsed.error(diagnostics))?;
         let refused = found.refused.into_iter();
         let refused = refused.map(|r| Refused { name: r.name, error: parsed.error(r.diagnostics) }).collect();
-        let functions = found.functions.into_iter().map(Function::new).collect();
+        let functions = found.functions.into_iter().map(|f| Function::new(f, parsed.limits)).collect();
         Ok(Self { parsed: Arc::new(parsed), functions, refused })
     }
 
@@ -128,22 +174,30 @@ impl Program {
     /// # Errors
     /// [`Error::Source`] with all of its mistakes.
     pub fn expression(&self, text: &str, variables: &[&str]) -> Result<Function, Error> {
+        let limits = self.parsed.limits;
+        let budget = Budget::new(&limits);
+        budget.source(text.len()).map_err(Diagnostic::from)?;
         let mut sources = self.parsed.sources.clone();
         let file = sources.add("expression", text);
         let found = syntax::parse_expression(file, text).and_then(|expression| {
             let module = program::with_expression(self.parsed.module.clone(), expression, variables);
-            self.parsed.resolve(&mut sources, (module, Vec::new()), Some(""))
+            self.parsed.resolve(&mut sources, (module, Vec::new()), Some(""), &budget)
         });
         let found = match found {
             Ok(mut found) => match (found.functions.pop(), found.refused.pop()) {
                 (Some(function), _) => {
-                    return Ok(Function::new(program::Function { name: text.to_owned(), ..function }));
+                    return Ok(Function::new(program::Function { name: text.to_owned(), ..function }, limits));
                 }
                 (None, refused) => refused.map_or(Vec::new(), |refused| refused.diagnostics),
             },
             Err(diagnostics) => diagnostics,
         };
         Err(Error::Source(Report::new(sources, found)))
+    }
+
+    /// Every file that was read.
+    pub(crate) fn sources(&self) -> &SourceMap {
+        &self.parsed.sources
     }
 
     /// The scene of the program's shapes: what [`crate::render`] and [`crate::arrange`] take.
@@ -153,10 +207,11 @@ impl Program {
     pub fn scene(&self) -> Result<Scene, Error> {
         let parsed = &self.parsed;
         let source = parsed.sources.get(parsed.file);
-        let artefact = match &parsed.path {
-            Some(path) => session::compile(Source::File(path), &[]),
-            None => session::compile(Source::Text { name: &source.name, text: &source.text }, &[]),
+        let from = match &parsed.path {
+            Some(path) => Source::File(path),
+            None => Source::Text { name: &source.name, text: &source.text },
         };
+        let artefact = session::compile_within(from, &[], &Budget::new(&parsed.limits));
         artefact.scene.ok_or(Error::Source(Report::new(artefact.sources, artefact.diagnostics)))
     }
 
@@ -184,9 +239,10 @@ impl Parsed {
         sources: &mut SourceMap,
         parsed: (Module, Vec<Diagnostic>),
         only: Option<&str>,
+        budget: &Budget,
     ) -> Result<program::Functions, Vec<Diagnostic>> {
         let importer: &dyn Importer = if self.path.is_some() { &program::FileSystem } else { &program::Embedded };
-        let context = Context { importer, differentiate: &derive::derivative, overrides: &[] };
+        let context = Context { importer, differentiate: &derive::derivative, overrides: &[], budget };
         program::resolve_functions(sources, self.file, parsed, only, &context)
     }
 

@@ -17,6 +17,9 @@ use crate::graph::Op;
 use crate::graph::Value;
 use crate::graph::verify;
 use crate::interval::Interval;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
+use crate::limits::Limits;
 
 pub use bounds::bounds;
 use builder::Builder;
@@ -63,12 +66,24 @@ pub struct Report {
 /// # Panics
 /// If the number of bounds is not the number of variables; in debug builds if a pass breaks an invariant of the graph.
 pub fn run(graph: &Graph, inputs: &[Interval]) -> (Graph, Vec<Report>) {
+    let budget = Budget::new(&Limits::unlimited());
+    run_within(graph, inputs, &budget).unwrap_or_else(|_| unreachable!("there is no limit"))
+}
+
+/// The same within limits: of time, and of the nodes that rows may add.
+///
+/// # Errors
+/// Which limit was exceeded.
+///
+/// # Panics
+/// As [`run`].
+pub fn run_within(graph: &Graph, inputs: &[Interval], budget: &Budget) -> Result<(Graph, Vec<Report>), Exceeded> {
     let mut graph = graph.clone();
     let mut reports = Vec::new();
     for _ in 0..MAX_ROUNDS {
         let mut unchanged = true;
         for pass in PIPELINE {
-            let after = rebuild(&graph, inputs, pass.rewrite);
+            let after = rebuild(&graph, inputs, pass.rewrite, budget)?;
             debug_assert_eq!(verify(&after), Ok(()), "after {}:\n{after}", pass.name);
             let changed = !same(&graph, &after);
             unchanged &= !changed;
@@ -79,27 +94,34 @@ pub fn run(graph: &Graph, inputs: &[Interval]) -> (Graph, Vec<Report>) {
             break;
         }
     }
-    (graph, reports)
+    Ok((graph, reports))
 }
 
 /// A new graph in which each operation that the outputs need is replaced as `rewrite` says.
-fn rebuild(old: &Graph, inputs: &[Interval], rewrite: Rewrite) -> Graph {
+fn rebuild(old: &Graph, inputs: &[Interval], rewrite: Rewrite, budget: &Budget) -> Result<Graph, Exceeded> {
     // The second sweep drops what the rows built on the way and orders operands by their final indices.
-    let rewritten = sweep(old, inputs, |builder, op, operands| settle(builder, op, operands, rewrite));
-    sweep(&rewritten, inputs, |builder, op, operands| match (op, operands) {
+    let rewritten = sweep(old, inputs, budget, |builder, op, operands| settle(builder, op, operands, rewrite))?;
+    sweep(&rewritten, inputs, budget, |builder, op, operands| match (op, operands) {
         (Op::Add | Op::Mul | Op::Min | Op::Max | Op::Hypot | Op::Equal, &[x, y]) if x > y => builder.push(op, &[y, x]),
         _ => builder.push(op, operands),
     })
 }
 
 /// Copies what the outputs need, each operation by `copy`, and all inputs.
-fn sweep(old: &Graph, inputs: &[Interval], copy: impl Fn(&mut Builder, Op, &[Value]) -> Value) -> Graph {
+fn sweep(
+    old: &Graph,
+    inputs: &[Interval],
+    budget: &Budget,
+    copy: impl Fn(&mut Builder, Op, &[Value]) -> Value,
+) -> Result<Graph, Exceeded> {
     let mut builder = Builder::new(old.variables(), inputs);
     let roots: Vec<Value> = old.outputs().iter().map(|&(_, value)| value).collect();
     let needed = old.reachable(&roots);
     let mut image = vec![Value(u32::MAX); old.len()];
     let mut operands = Vec::with_capacity(3);
     for (value, node) in old.iter().filter(|(value, _)| needed[value.index()]) {
+        budget.tick()?;
+        budget.nodes(builder.graph().len())?;
         operands.clear();
         operands.extend(node.operands().iter().map(|v| image[v.index()]));
         image[value.index()] = match (node.op, old.as_constant(value)) {
@@ -108,7 +130,7 @@ fn sweep(old: &Graph, inputs: &[Interval], copy: impl Fn(&mut Builder, Op, &[Val
             (op, None) => copy(&mut builder, op, &operands),
         };
     }
-    builder.finish(old.outputs().iter().map(|(name, value)| (name.clone(), image[value.index()])))
+    Ok(builder.finish(old.outputs().iter().map(|(name, value)| (name.clone(), image[value.index()]))))
 }
 
 /// Rewrites an operation until no row fits.

@@ -147,10 +147,15 @@ pub(super) fn component_index(length: usize, span: Span) -> Diagnostic {
         .help("the number must be written out or a constant")
 }
 
-pub(super) fn too_much_expansion(span: Span) -> Diagnostic {
+pub(super) fn too_much_expansion(span: Span, steps: usize) -> Diagnostic {
     Diagnostic::error(code::TOO_MUCH_EXPANSION, "this formula grows too large when its functions are inlined")
-        .at(span, "given up here")
+        .at(span, format!("given up here after {steps} steps"))
         .help("functions that call functions several times multiply; name a shared part with `let`")
+}
+
+pub(super) fn too_much_text(path: &str, span: Span, allowed: usize) -> Diagnostic {
+    let title = format!("with `{path}` there is more text than allowed: {} KiB in all", allowed >> 10);
+    Diagnostic::error(code::FILE_TOO_LARGE, title).at(span, "not read")
 }
 
 pub(super) fn too_deep(span: Span) -> Diagnostic {

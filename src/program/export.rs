@@ -81,8 +81,8 @@ pub fn resolve_functions(
     context: &Context,
 ) -> Result<Functions, Vec<Diagnostic>> {
     let faulty = !diagnostics.is_empty();
-    let program = Program::load(sources, (file, module), faulty, HashSet::new(), context.importer, &mut diagnostics);
-    let mut lowerer = Lowerer::new(&program, context.differentiate);
+    let program = Program::load(sources, (file, module), faulty, HashSet::new(), context, &mut diagnostics);
+    let mut lowerer = Lowerer::new(&program, context);
     lowerer.evaluate_items();
     let parameters = parameters(&mut lowerer, context.overrides);
     diagnostics.extend(lowerer.take_diagnostics());
@@ -108,7 +108,7 @@ pub fn resolve_functions(
                 let needs = "a function for other programs has numbers";
                 found.refused.push(refuse(vec![match lowered.meaning {
                     // What an earlier function has reported.
-                    Meaning::Invalid => errors::too_much_expansion(lowered.span),
+                    Meaning::Invalid => errors::too_much_expansion(lowered.span, context.budget.limits().steps),
                     _ => errors::wrong_kind(needs, lowered.meaning.kind(), lowered.span),
                 }]));
                 continue;

@@ -4,18 +4,20 @@
 //! importer. A file may be imported from many places, also in a circle: it is read once.
 
 use std::fs;
+use std::fs::File;
 use std::io;
+use std::io::Read;
 use std::path::Component;
 use std::path::Path;
 use std::path::PathBuf;
 
 /// Reads files for `import`.
 pub trait Importer {
-    /// The text of a file.
+    /// The text of a file of at most `limit` bytes; of a larger one no more than that is read.
     ///
     /// # Errors
-    /// Of kind [`io::ErrorKind::NotFound`] if there is no such file.
-    fn read(&self, path: &Path) -> io::Result<String>;
+    /// Of kind [`io::ErrorKind::NotFound`] if there is no such file, [`io::ErrorKind::FileTooLarge`] if it is larger.
+    fn read(&self, path: &Path, limit: usize) -> io::Result<String>;
 
     /// Names of the `.imp` files of a folder, for suggestions.
     fn names(&self, folder: &Path) -> Vec<String>;
@@ -26,8 +28,14 @@ pub trait Importer {
 pub struct FileSystem;
 
 impl Importer for FileSystem {
-    fn read(&self, path: &Path) -> io::Result<String> {
-        fs::read_to_string(path)
+    fn read(&self, path: &Path, limit: usize) -> io::Result<String> {
+        // Looked at before it is opened: a pipe without a writer would be waited for, and a device may have no end.
+        if !fs::metadata(path)?.is_file() {
+            return Err(io::Error::other(if path.is_dir() { "it is a folder" } else { "it is no regular file" }));
+        }
+        let mut text = String::new();
+        File::open(path)?.take((limit as u64).saturating_add(1)).read_to_string(&mut text)?;
+        if text.len() > limit { Err(io::ErrorKind::FileTooLarge.into()) } else { Ok(text) }
     }
 
     fn names(&self, folder: &Path) -> Vec<String> {
@@ -47,7 +55,7 @@ impl Importer for FileSystem {
 pub struct Embedded;
 
 impl Importer for Embedded {
-    fn read(&self, _: &Path) -> io::Result<String> {
+    fn read(&self, _: &Path, _: usize) -> io::Result<String> {
         Err(io::Error::from(io::ErrorKind::NotFound))
     }
 
@@ -94,8 +102,8 @@ mod tests {
 
     #[test]
     fn importers_say_what_is_missing() {
-        assert_eq!(Embedded.read(Path::new("x.imp")).unwrap_err().kind(), io::ErrorKind::NotFound);
-        assert_eq!(FileSystem.read(Path::new("no/such/file.imp")).unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert_eq!(Embedded.read(Path::new("x.imp"), 9).unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert_eq!(FileSystem.read(Path::new("no/such/file.imp"), 9).unwrap_err().kind(), io::ErrorKind::NotFound);
         assert!(FileSystem.names(Path::new("no/such/folder")).is_empty());
     }
 }

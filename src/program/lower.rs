@@ -13,6 +13,7 @@ use crate::diagnostic::Span;
 use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
+use crate::limits::Budget;
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::ExprKind;
 use crate::syntax::ast::Join;
@@ -25,6 +26,7 @@ use super::errors;
 use super::exponent::Exact;
 use super::names::Lookup;
 use super::names::Program;
+use super::resolve::Context;
 use super::resolve::Differentiate;
 use super::values::Equation;
 use super::values::Function;
@@ -40,22 +42,21 @@ const MAX_DEPTH: usize = 2000;
 /// Levels that a call or product `name(...)` counts.
 const CALL_LEVELS: usize = 3;
 
-/// Steps of lowering spent inside functions: expressions inlined and nodes copied. What is written in the file itself
-/// is linear in its length and not counted.
-const MAX_EXPANSION: usize = 1_000_000;
-
 /// The state of lowering one program into one graph.
 pub(super) struct Lowerer<'p> {
     pub program: &'p Program,
     pub graph: Graph,
     pub exact: Exact,
     pub differentiate: &'p Differentiate,
+    budget: &'p Budget,
     diagnostics: Vec<Diagnostic>,
     reported: HashSet<(&'static str, Option<Span>)>,
     /// By item, once evaluated.
     meanings: Vec<Option<Meaning>>,
     frames: Vec<Frame>,
     depth: usize,
+    /// Steps spent inside functions: expressions inlined and nodes copied. What is written in the file itself is linear
+    /// in its length and not counted.
     expansion: usize,
     exhausted: bool,
 }
@@ -69,12 +70,13 @@ struct Frame {
 }
 
 impl<'p> Lowerer<'p> {
-    pub fn new(program: &'p Program, differentiate: &'p Differentiate) -> Self {
+    pub fn new(program: &'p Program, context: &Context<'p>) -> Self {
         Self {
             program,
             graph: Graph::new(),
             exact: Exact::default(),
-            differentiate,
+            differentiate: context.differentiate,
+            budget: context.budget,
             diagnostics: Vec::new(),
             reported: HashSet::new(),
             meanings: vec![None; program.items.len()],
@@ -159,17 +161,29 @@ impl<'p> Lowerer<'p> {
     /// Counts work done inside functions; `false`, with a message, when it is too much.
     pub fn spend(&mut self, steps: usize, span: Span) -> bool {
         self.expansion = self.expansion.saturating_add(steps);
-        if self.expansion <= MAX_EXPANSION {
-            return true;
-        }
-        // Once, wherever it happens first; everything after it is given up too.
-        if !self.exhausted {
-            self.exhausted = true;
+        if !self.exhausted && self.budget.steps(self.expansion).is_err() {
             // The call that was written, not the one among millions at which patience ended.
             let call = self.frames.iter().find_map(|frame| frame.call.as_ref());
-            self.diagnostics.push(errors::too_much_expansion(call.map_or(span, |(_, span)| *span)));
+            let place = call.map_or(span, |(_, span)| *span);
+            self.give_up(errors::too_much_expansion(place, self.budget.limits().steps));
         }
-        false
+        !self.exhausted
+    }
+
+    /// Whether time is left and the graph is no larger than allowed; a message when it no longer is.
+    fn affords(&mut self, span: Span) -> bool {
+        if !self.exhausted
+            && let Err(exceeded) = self.budget.tick().and_then(|()| self.budget.nodes(self.graph.len()))
+        {
+            self.give_up(Diagnostic::from(exceeded).at(span, "given up here"));
+        }
+        !self.exhausted
+    }
+
+    /// Ends the work: once, wherever a limit is met first; everything after it is given up too.
+    fn give_up(&mut self, diagnostic: Diagnostic) {
+        self.exhausted = true;
+        self.diagnostics.push(diagnostic);
     }
 
     /// Lowers `body` with the parameters of a called function.
@@ -244,7 +258,8 @@ impl<'p> Lowerer<'p> {
             self.report(errors::too_deep(expr.span));
             return Meaning::Invalid;
         }
-        if self.frames.last().is_some_and(|frame| frame.call.is_some()) && !self.spend(1, expr.span) {
+        let inlined = self.frames.last().is_some_and(|frame| frame.call.is_some());
+        if inlined && !self.spend(1, expr.span) || !self.affords(expr.span) {
             return Meaning::Invalid;
         }
         self.depth += 1;

@@ -25,7 +25,7 @@ use super::builtins::Builtin;
 use super::builtins::Constant;
 use super::errors;
 use super::import;
-use super::import::Importer;
+use super::resolve::Context;
 use super::scene::COORDINATES;
 use super::settings;
 use super::stdlib;
@@ -42,6 +42,8 @@ pub(super) struct Program {
     /// Names that the caller declares for the main file: the variables of `imp eval`.
     pub variables: HashSet<String>,
     by_path: HashMap<String, usize>,
+    /// Whether an import was refused because of the limits.
+    exhausted: bool,
 }
 
 #[derive(Debug)]
@@ -92,14 +94,14 @@ impl Program {
         main: (FileId, Module),
         faulty: bool,
         variables: HashSet<String>,
-        importer: &dyn Importer,
+        context: &Context,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Program {
         let mut program = Program { variables, ..Program::default() };
         let path = import::resolve_path("", &sources.get(main.0).name).to_string_lossy().into_owned();
         program.by_path.insert(path, 0);
         program.add_file(main.0, main.1, Origin { library: false, faulty }, diagnostics);
-        program.load_imports(sources, importer, diagnostics);
+        program.load_imports(sources, context, diagnostics);
         program.analyse(sources, diagnostics);
         program
     }
@@ -170,13 +172,13 @@ impl Program {
     }
 
     /// Follows the imports of all files; files are appended while they are walked.
-    fn load_imports(&mut self, sources: &mut SourceMap, importer: &dyn Importer, diagnostics: &mut Vec<Diagnostic>) {
+    fn load_imports(&mut self, sources: &mut SourceMap, context: &Context, diagnostics: &mut Vec<Diagnostic>) {
         let mut next = 0;
         while next < self.files.len() {
             let module = Rc::clone(&self.files[next].module);
             for statement in &module.statements {
                 let StatementKind::Import { path, path_span } = &statement.kind else { continue };
-                if let Some(file) = self.import(next, path, *path_span, sources, importer, diagnostics) {
+                if let Some(file) = self.import(next, path, *path_span, sources, context, diagnostics) {
                     self.files[next].imports.push(file);
                 }
             }
@@ -190,7 +192,7 @@ impl Program {
         path: &str,
         span: Span,
         sources: &mut SourceMap,
-        importer: &dyn Importer,
+        context: &Context,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<usize> {
         if path.starts_with("std/") {
@@ -210,8 +212,24 @@ impl Program {
         if let Some(&file) = self.by_path.get(&key) {
             return Some(file);
         }
-        let text = match importer.read(&target) {
+        let imported = self.files.iter().skip(1).filter(|file| !file.origin.library).count();
+        let budget = context.budget;
+        if let Err(exceeded) = budget.files(imported + 1).and_then(|()| budget.time()) {
+            // Once: every further import would say the same.
+            if !std::mem::replace(&mut self.exhausted, true) {
+                diagnostics.push(Diagnostic::from(exceeded).at(span, "not read"));
+            }
+            return None;
+        }
+        let importer = context.importer;
+        let text = match importer.read(&target, budget.source_left()) {
             Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::FileTooLarge => {
+                if !std::mem::replace(&mut self.exhausted, true) {
+                    diagnostics.push(errors::too_much_text(path, span, budget.limits().source_bytes));
+                }
+                return None;
+            }
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 let mut diagnostic = errors::import_failed(path, span, "there is no such file");
                 let wanted = target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -231,6 +249,8 @@ impl Program {
                 return None;
             }
         };
+        // Within what is left, as was asked.
+        let _ = budget.source(text.len());
         let id = sources.add(key.clone(), text.as_str());
         let (module, faults) = syntax::parse(id, &text);
         let origin = Origin { library: false, faulty: !faults.is_empty() };

@@ -12,6 +12,7 @@ use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
 use crate::interval::Interval;
+use crate::limits::Budget;
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::Module;
 use crate::syntax::ast::Name;
@@ -47,6 +48,8 @@ pub struct Context<'a> {
     pub differentiate: &'a Differentiate,
     /// Values of parameters and of the time `t` that replace the written ones, as by `--set`.
     pub overrides: &'a [(String, Interval)],
+    /// What all of it may cost.
+    pub budget: &'a Budget,
 }
 
 /// Resolves what [`crate::syntax::parse`] gave for a file. The scene is absent if there is any error, of the parser or of
@@ -60,8 +63,8 @@ pub fn resolve(
 ) -> (Option<Scene>, Vec<Diagnostic>) {
     let empty = module.statements.is_empty();
     let faulty = !diagnostics.is_empty();
-    let program = Program::load(sources, (file, module), faulty, HashSet::new(), context.importer, &mut diagnostics);
-    let mut lowerer = Lowerer::new(&program, context.differentiate);
+    let program = Program::load(sources, (file, module), faulty, HashSet::new(), context, &mut diagnostics);
+    let mut lowerer = Lowerer::new(&program, context);
     lowerer.evaluate_items();
     let mut shapes = lower_shapes(&mut lowerer);
     let declared = parameters(&mut lowerer, context.overrides);
@@ -136,8 +139,8 @@ pub fn resolve_expression(
     let kind = StatementKind::Let { name, value: expression.clone() };
     module.statements.push(Statement { span: expression.span, doc: Vec::new(), kind });
     let main = (expression.span.file, module);
-    let program = Program::load(sources, main, false, variables.clone(), context.importer, &mut diagnostics);
-    let mut lowerer = Lowerer::new(&program, context.differentiate);
+    let program = Program::load(sources, main, false, variables.clone(), context, &mut diagnostics);
+    let mut lowerer = Lowerer::new(&program, context);
     lowerer.evaluate_items();
     let mut parameters = parameters(&mut lowerer, context.overrides);
     // Time passes in scenes alone; here `t` is a variable like any other.
@@ -187,8 +190,8 @@ pub fn resolve_constant(
         },
     };
     let main = (expression.span.file, Module { statements: vec![statement] });
-    let program = Program::load(sources, main, false, HashSet::new(), context.importer, &mut diagnostics);
-    let mut lowerer = Lowerer::new(&program, context.differentiate);
+    let program = Program::load(sources, main, false, HashSet::new(), context, &mut diagnostics);
+    let mut lowerer = Lowerer::new(&program, context);
     lowerer.evaluate_items();
     let value = lowerer.constant_interval(expression, "this value");
     diagnostics.extend(lowerer.into_results().1);

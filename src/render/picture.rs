@@ -1,5 +1,7 @@
 //! A finished picture: numbers by pixel, row by row from the top left.
 
+use image::RgbImage;
+
 use crate::render::certificate::Certificate;
 use crate::render::outcome::Surface;
 use crate::render::stats::Stats;
@@ -57,5 +59,11 @@ impl Picture {
     /// The index of a pixel in a plane.
     pub fn index(&self, x: u32, y: u32) -> usize {
         y as usize * self.width as usize + x as usize
+    }
+
+    /// The colours as an image of the `image` crate; black if the options asked for none.
+    pub fn image(&self) -> RgbImage {
+        let pixels = self.color.concat();
+        RgbImage::from_raw(self.width, self.height, pixels).unwrap_or_else(|| RgbImage::new(self.width, self.height))
     }
 }

@@ -3,9 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::collections::HashMap;
-use std::fs::File;
 use std::io;
-use std::io::Read;
 use std::path::Path;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,6 +28,8 @@ use crate::graph::Value;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
+use crate::limits::Budget;
+use crate::limits::Limits;
 use crate::program;
 use crate::program::Context;
 use crate::program::FileSystem;
@@ -70,14 +70,22 @@ pub struct Workspace {
     files: CachedFiles,
     /// What imported files define, as it is written there.
     imported: Vec<(String, String)>,
+    limits: Limits,
 }
 
 impl Workspace {
+    /// An empty workspace in which every definition and every expression is held to these limits; those of
+    /// [`Workspace::default`] are the default ones.
+    pub fn within(limits: Limits) -> Self {
+        Self { limits, ..Self::default() }
+    }
+
     /// Adds the definitions (`let`, `fn`, `param`, `import`) of a text; the names that they define.
     ///
     /// # Errors
     /// What is wrong with them; then nothing has changed.
     pub fn define(&mut self, snippet: &Snippet, variables: &Bindings) -> Result<Vec<String>, Messages> {
+        let budget = self.budget(snippet)?;
         let mut sources = self.sources.clone();
         let (file, padded) = snippet.add_to(&mut sources);
         let (module, mut found) = syntax::parse(file, &padded);
@@ -89,7 +97,7 @@ impl Workspace {
         let mut definitions = self.definitions.clone();
         definitions.statements.retain(|old| defined(old).is_none_or(|name| !names.iter().any(|new| new == name)));
         definitions.statements.extend(module.statements);
-        self.adopt(sources, file, definitions, variables, &names)?;
+        self.adopt((sources, file), definitions, variables, &names, &budget)?;
         Ok(names)
     }
 
@@ -98,6 +106,7 @@ impl Workspace {
     /// # Errors
     /// If the file or a definition in it cannot be read; then nothing has changed.
     pub fn load(&mut self, path: &Snippet, variables: &Bindings) -> Result<(), Messages> {
+        let budget = self.budget(path)?;
         let before = self.files.replace(HashMap::new());
         let mut sources = self.sources.clone();
         let file = sources.add(path.name, path.text);
@@ -109,7 +118,7 @@ impl Workspace {
             .retain(|statement| !matches!(&statement.kind, StatementKind::Import { path, .. } if *path == written));
         let kind = StatementKind::Import { path: written, path_span };
         definitions.statements.push(Statement { span: path_span, doc: Vec::new(), kind });
-        let adopted = self.adopt(sources, file, definitions, variables, &[]);
+        let adopted = self.adopt((sources, file), definitions, variables, &[], &budget);
         if adopted.is_err() {
             self.files.replace(before);
         }
@@ -119,17 +128,18 @@ impl Workspace {
     /// Takes new definitions if an expression can be resolved among them.
     fn adopt(
         &mut self,
-        sources: SourceMap,
-        file: FileId,
+        (sources, file): (SourceMap, FileId),
         definitions: Module,
         variables: &Bindings,
         replaced: &[String],
+        budget: &Budget,
     ) -> Result<(), Messages> {
         let mut probe = sources.clone();
         let nothing = Span { file, start: 0, end: 0 };
         let zero = Expr { span: nothing, kind: ExprKind::Number(num_traits::Zero::zero()) };
         let names: Vec<&str> = variables.keys().filter(|name| !replaced.contains(name)).map(String::as_str).collect();
-        let resolved = program::resolve_expression(&mut probe, &zero, &names, definitions.clone(), &self.context());
+        let resolved =
+            program::resolve_expression(&mut probe, &zero, &names, definitions.clone(), &self.context(budget));
         match resolved {
             Ok(_) => {
                 self.sources = sources;
@@ -162,8 +172,15 @@ impl Workspace {
         text.get(span).unwrap_or_default()
     }
 
-    fn context(&self) -> Context<'_> {
-        Context { importer: &self.files, differentiate: &derive::derivative, overrides: &[] }
+    fn context<'a>(&'a self, budget: &'a Budget) -> Context<'a> {
+        Context { importer: &self.files, differentiate: &derive::derivative, overrides: &[], budget }
+    }
+
+    /// What reading a text may cost.
+    fn budget(&self, snippet: &Snippet) -> Result<Budget, Messages> {
+        let budget = Budget::new(&self.limits);
+        budget.source(snippet.text.len()).map_err(Diagnostic::from)?;
+        Ok(budget)
     }
 
     /// Resolves an expression in which `variables` may occur.
@@ -171,12 +188,13 @@ impl Workspace {
     /// # Errors
     /// What is wrong with it, or with the definitions that it uses.
     pub fn expression(&self, snippet: &Snippet, variables: &[&str], how: Reading) -> Result<Expression, Messages> {
+        let budget = self.budget(snippet)?;
         let mut sources = self.sources.clone();
         let found = snippet.parse(&mut sources).and_then(|expr| {
             let expr = if how == Reading::Zero { self.zero_of(expr, variables) } else { expr };
             let condition = is_condition(&expr);
             let definitions = self.definitions.clone();
-            program::resolve_expression(&mut sources, &expr, variables, definitions, &self.context())
+            program::resolve_expression(&mut sources, &expr, variables, definitions, &self.context(&budget))
                 .map(|resolved| (resolved, condition))
         });
         match found {
@@ -240,9 +258,6 @@ impl Workspace {
     }
 }
 
-/// Definitions beyond this are refused: what is meant is another file, or a device that never ends.
-const MAX_BYTES: u64 = 1 << 26;
-
 /// Reads files once, so that a definition keeps its meaning until the file is loaded again.
 #[derive(Debug, Default)]
 struct CachedFiles(Mutex<HashMap<PathBuf, String>>);
@@ -271,16 +286,12 @@ impl CachedFiles {
 }
 
 impl Importer for CachedFiles {
-    fn read(&self, path: &Path) -> io::Result<String> {
+    fn read(&self, path: &Path, limit: usize) -> io::Result<String> {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(text) = known.get(path) {
-            return Ok(text.clone());
+            return if text.len() > limit { Err(io::ErrorKind::FileTooLarge.into()) } else { Ok(text.clone()) };
         }
-        let mut text = String::new();
-        File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
-        if text.len() as u64 > MAX_BYTES {
-            return Err(io::Error::other(format!("larger than {} MiB", MAX_BYTES >> 20)));
-        }
+        let text = FileSystem.read(path, limit)?;
         known.insert(path.to_owned(), text.clone());
         Ok(text)
     }

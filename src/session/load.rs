@@ -10,6 +10,7 @@ use crate::diagnostic::FileId;
 use crate::diagnostic::SourceMap;
 use crate::diagnostic::code;
 use crate::diagnostic::did_you_mean;
+use crate::limits::Budget;
 use crate::program::FileSystem;
 use crate::program::Importer;
 
@@ -20,9 +21,11 @@ pub const MAX_BYTES: u64 = 1 << 30;
 /// Adds a file to the sources.
 ///
 /// # Errors
-/// As [`bytes`], and if it is not text.
-pub(super) fn load(sources: &mut SourceMap, path: &Path) -> Result<FileId, Diagnostic> {
-    let bytes = bytes(path)?;
+/// As [`bytes`], and if it is not text or more than may be read.
+pub(super) fn load(sources: &mut SourceMap, path: &Path, budget: &Budget) -> Result<FileId, Diagnostic> {
+    let bytes = at_most(path, budget.source_left() as u64)?;
+    // Within what is left, as was asked.
+    let _ = budget.source(bytes.len());
     let (file, fault) = sources.add_bytes(path.display().to_string(), &bytes);
     fault.map_or(Ok(file), Err)
 }
@@ -32,16 +35,20 @@ pub(super) fn load(sources: &mut SourceMap, path: &Path) -> Result<FileId, Diagn
 /// # Errors
 /// If the file is missing (with the similar names of its folder), is a folder, is too large or cannot be read.
 pub fn bytes(path: &Path) -> Result<Vec<u8>, Diagnostic> {
+    at_most(path, MAX_BYTES)
+}
+
+fn at_most(path: &Path, limit: u64) -> Result<Vec<u8>, Diagnostic> {
     let name = path.display().to_string();
     if path.is_dir() {
         return Err(folder(path, &name));
     }
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
+    let read = File::open(path).and_then(|file| file.take(limit.saturating_add(1)).read_to_end(&mut bytes));
     match read {
         Err(error) => Err(unreadable(path, &name, &error)),
-        Ok(_) if bytes.len() as u64 > MAX_BYTES => {
-            Err(Diagnostic::error(code::FILE_TOO_LARGE, format!("`{name}` is larger than {} MiB", MAX_BYTES >> 20)))
+        Ok(_) if bytes.len() as u64 > limit => {
+            Err(Diagnostic::error(code::FILE_TOO_LARGE, format!("`{name}` is larger than {} KiB", limit >> 10)))
         }
         Ok(_) => Ok(bytes),
     }
@@ -80,9 +87,10 @@ mod tests {
     use std::fs;
 
     use super::*;
+    use crate::limits::Limits;
 
     fn message(path: &Path) -> String {
-        let diagnostic = load(&mut SourceMap::default(), path).unwrap_err();
+        let diagnostic = load(&mut SourceMap::default(), path, &Budget::new(&Limits::default())).unwrap_err();
         [vec![diagnostic.title], diagnostic.help].concat().join("; ").replace('\\', "/")
     }
 
@@ -99,7 +107,7 @@ mod tests {
         assert!(message(&folder.path().join("nothing/at/all.imp")).contains("nor a folder"));
         assert!(message(folder.path()).contains("such as"));
         let mut sources = SourceMap::default();
-        let file = load(&mut sources, &folder.path().join("torus.imp")).unwrap();
+        let file = load(&mut sources, &folder.path().join("torus.imp"), &Budget::new(&Limits::default())).unwrap();
         assert_eq!(&*sources.get(file).text, "x = 1");
         fs::write(folder.path().join("latin.imp"), b"# caf\xe9").unwrap();
         assert!(message(&folder.path().join("latin.imp")).contains("UTF-8"));

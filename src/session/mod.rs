@@ -22,6 +22,9 @@ use crate::diagnostic::SourceMap;
 use crate::graph::Graph;
 use crate::graph::Value;
 use crate::interval::Interval;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
+use crate::limits::Limits;
 use crate::passes;
 use crate::passes::Report;
 use crate::program;
@@ -33,7 +36,6 @@ use crate::syntax;
 use crate::syntax::ast::Module;
 
 pub use crate::session::backend::backend;
-pub use crate::session::load::MAX_BYTES;
 pub use crate::session::load::bytes;
 pub use crate::session::save::cannot_write;
 pub use crate::session::save::check_folder;
@@ -87,8 +89,13 @@ pub struct Artefact {
 /// Compiles a source up to the scene from which kernels are made. A stage with errors is the last one; whether there
 /// were any shows in [`Artefact::scene`].
 pub fn compile(source: Source, overrides: &[Override]) -> Artefact {
+    compile_within(source, overrides, &Budget::new(&Limits::default()))
+}
+
+/// The same within other limits than the default ones.
+pub fn compile_within(source: Source, overrides: &[Override], budget: &Budget) -> Artefact {
     let mut artefact = Artefact::default();
-    artefact.build(source, overrides);
+    artefact.build(source, overrides, budget);
     artefact
 }
 
@@ -97,19 +104,30 @@ pub fn compile(source: Source, overrides: &[Override]) -> Artefact {
 /// # Errors
 /// What is wrong with it, and the sources into which that points.
 pub fn read(path: &Path) -> Result<(SourceMap, FileId), (SourceMap, Diagnostic)> {
+    read_within(path, &Budget::new(&Limits::default()))
+}
+
+/// The same within other limits than the default ones.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_within(path: &Path, budget: &Budget) -> Result<(SourceMap, FileId), (SourceMap, Diagnostic)> {
     let mut sources = SourceMap::default();
-    match load::load(&mut sources, path) {
+    match load::load(&mut sources, path, budget) {
         Ok(file) => Ok((sources, file)),
         Err(diagnostic) => Err((sources, diagnostic)),
     }
 }
 
 impl Artefact {
-    fn build(&mut self, source: Source, overrides: &[Override]) -> Option<()> {
+    fn build(&mut self, source: Source, overrides: &[Override], budget: &Budget) -> Option<()> {
         // Bytes to text.
         let (file, importer): (FileId, &dyn Importer) = match source {
-            Source::File(path) => (self.load(path)?, &program::FileSystem),
-            Source::Text { name, text } => (self.sources.add(name, text), &program::Embedded),
+            Source::File(path) => (self.load(path, budget)?, &program::FileSystem),
+            Source::Text { name, text } => {
+                self.afford(budget.source(text.len()))?;
+                (self.sources.add(name, text), &program::Embedded)
+            }
         };
         self.file = Some(file);
 
@@ -117,17 +135,19 @@ impl Artefact {
         let text = self.sources.get(file).text.clone();
         let parsed = syntax::parse(file, &text);
         self.module = Some(parsed.0.clone());
+        self.afford(budget.time())?;
 
         // Tree to formulas in one graph, with the scene around them. Statements that could not be read do not keep the
         // others from being checked.
-        let context = |overrides| Context { importer, differentiate: &derive::derivative, overrides };
+        let context = |overrides| Context { importer, differentiate: &derive::derivative, overrides, budget };
         let overrides = self.values(overrides, &context(&[]))?;
         let (resolved, found) = program::resolve(&mut self.sources, file, parsed, &context(&overrides));
         self.resolved = resolved;
         self.report(found)?;
 
         // Formulas to formulas that are cheaper or tighter over the domain.
-        let (scene, passes) = simplify(self.resolved.as_ref()?);
+        let simplified = simplify(self.resolved.as_ref()?, budget);
+        let (scene, passes) = self.afford(simplified)?;
         self.passes = passes;
         self.scene = Some(scene);
         Some(())
@@ -140,8 +160,13 @@ impl Artefact {
         (!failed).then_some(())
     }
 
-    fn load(&mut self, path: &Path) -> Option<FileId> {
-        match load::load(&mut self.sources, path) {
+    /// Keeps the message if a limit was exceeded.
+    fn afford<T>(&mut self, result: Result<T, Exceeded>) -> Option<T> {
+        result.map_err(|exceeded| self.diagnostics.push(exceeded.into())).ok()
+    }
+
+    fn load(&mut self, path: &Path, budget: &Budget) -> Option<FileId> {
+        match load::load(&mut self.sources, path, budget) {
             Ok(file) => Some(file),
             Err(diagnostic) => {
                 self.diagnostics.push(diagnostic);
@@ -174,7 +199,7 @@ impl Artefact {
 }
 
 /// Runs the passes over the scene's graph, for coordinates inside the domain and parameters inside their ranges.
-fn simplify(scene: &Scene) -> (Scene, Vec<Report>) {
+fn simplify(scene: &Scene, budget: &Budget) -> Result<(Scene, Vec<Report>), Exceeded> {
     let mut roots: Vec<Value> = Vec::new();
     let mut names: Vec<String> = Vec::new();
     for shape in &scene.shapes {
@@ -189,7 +214,7 @@ fn simplify(scene: &Scene) -> (Scene, Vec<Report>) {
         graph.add_output(name, image);
     }
     let inputs: Vec<Interval> = graph.variables().iter().map(|name| input_range(scene, name)).collect();
-    let (graph, reports) = passes::run(&graph, &inputs);
+    let (graph, reports) = passes::run_within(&graph, &inputs, budget)?;
     // The passes keep the outputs in their order.
     let mut results = graph.outputs().iter().map(|&(_, value)| value);
     let mut scene = scene.clone();
@@ -198,7 +223,7 @@ fn simplify(scene: &Scene) -> (Scene, Vec<Report>) {
         shape.condition = shape.condition.and_then(|_| results.next());
     }
     scene.graph = graph;
-    (scene, reports)
+    Ok((scene, reports))
 }
 
 /// Where an input of the scene's graph lies: a coordinate in the domain, a parameter in its range, the time anywhere.

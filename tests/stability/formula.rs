@@ -18,6 +18,8 @@ use imp::interval::Interval;
 use imp::kernel::Kernel;
 use imp::kernel::Packet;
 use imp::kernel::Real;
+use imp::limits::Budget;
+use imp::limits::Limits;
 use imp::passes;
 use imp::program;
 use imp::program::Context;
@@ -51,7 +53,9 @@ impl Formula {
     pub fn with(definitions: &str, text: &str) -> Self {
         let mut sources = SourceMap::default();
         let file = sources.add("case", text);
-        let context = Context { importer: &Embedded, differentiate: &derive::derivative, overrides: &[] };
+        let budget = Budget::new(&Limits::default());
+        let context =
+            Context { importer: &Embedded, differentiate: &derive::derivative, overrides: &[], budget: &budget };
         let definitions_file = sources.add("definitions", definitions);
         let (module, found) = syntax::parse(definitions_file, definitions);
         assert!(found.is_empty() || definitions.is_empty(), "{definitions}: {found:?}");
