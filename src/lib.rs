@@ -148,7 +148,7 @@
 //! let natural = f.intervals(&Options::default())?.enclose(&at)?;
 //! let affine = f.intervals(&Options { affine: true, ..Options::default() })?.enclose(&at)?;
 //! assert_eq!(natural.interval, Interval::new(16.0, 36.0).expect("the ends are in order"));
-//! assert_eq!(affine.interval, Interval::new(23.0, 25.0).expect("the ends are in order"));
+//! assert!(affine.interval.width() < 2.1 && affine.interval.contains(25.0));
 //! let single: IntervalKernel<f32> = f.interval_kernel(&Options::default())?;
 //! assert_eq!(single.enclose(&at)?.interval, natural.interval);
 //! # Ok::<(), imp::Error>(())
@@ -175,7 +175,7 @@
 //!
 //! let circles = Program::parse("x^2 + y^2 = 1 \n (x - 1)^2 + y^2 = 1 \n domain [-3, 3]^2")?;
 //! let arrangement = circles.arrange(&Default::default())?;
-//! let counts = imp::arrange::check(&arrangement).map_err(imp::diagnostic::Diagnostic::from)?;
+//! let counts = imp::arrange::check::check(&arrangement).map_err(imp::diagnostic::Diagnostic::from)?;
 //! assert!(counts.proved && counts.vertices.crossing == 2 && counts.faces == 4);
 //! # Ok::<(), imp::Error>(())
 //! ```
@@ -245,7 +245,7 @@
 //! | 2 | [`program`]: names, kinds, modules, the standard library, scenes; [`passes`]: folding and rewriting |
 //! | 3 | [`mod@derive`]: gradients, formulas along rays, interval and affine programs of lanes |
 //! | 4 | [`kernel`]: what consumers call: packets of boxes in, enclosures and verdicts out |
-//! | 5 | [`interpret`]: the reference kernel; [`codegen`]: the compiled ones; [`render`]: pictures and their proofs; [`arrange`]: arrangements of curves; [`roots`]: zeros along lines |
+//! | 5 | [`interpret`]: the reference kernel; [`codegen`]: the compiled ones; [`render`]: pictures and their proofs; [`arrange`]: arrangements of curves; [`roots`]: all zeros of a function |
 //! | 6 | [`session`]: source to scene in one function, and the choice of the backend; [`accuracy`]: what accuracy costs |
 //! | 7 | [`library`]: what other programs call; [`repl`]: calculating with boxes interactively |
 //! | 8 | [`mod@build`]: kernels ahead of time |
@@ -280,6 +280,7 @@ pub mod passes;
 pub mod program;
 pub mod render;
 pub mod repl;
+pub mod roots;
 pub mod session;
 pub mod syntax;
 

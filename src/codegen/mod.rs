@@ -14,6 +14,7 @@ use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::kernel::Backend;
 use crate::kernel::Kernel;
+use crate::limits::Budget;
 
 pub use emit::Emitted;
 pub use emit::emit;
@@ -40,6 +41,27 @@ impl Backend for Compiler {
     fn compile_f64(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
         compile(spec, Width::Best)
     }
+}
+
+/// The compiler within limits of operations and of time, under a budget that may have begun with the text. Cranelift cannot be
+/// stopped: the operations bound its time.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounded<'b>(pub &'b Budget);
+
+impl Backend for Bounded<'_> {
+    fn compile_f32(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
+        compile_within(spec, self.0)
+    }
+
+    fn compile_f64(&self, spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
+        compile_within(spec, self.0)
+    }
+}
+
+fn compile_within<T: jit::Format>(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<T>>, Diagnostic> {
+    let program = spec.lower_within(T::PRECISION, budget)?;
+    budget.time()?;
+    Ok(Arc::new(jit::JitKernel::<T>::new(&program, spec.rounding, Width::Widest)?))
 }
 
 /// The compiler for registers of a given width: widened kernels must equal narrow ones bit for bit, and are timed against

@@ -33,6 +33,7 @@ mod power;
 mod relations;
 mod reverse;
 pub mod round;
+mod serial;
 mod set_ops;
 mod text;
 mod trigonometric;

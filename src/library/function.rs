@@ -203,7 +203,8 @@ impl Function {
         for &value in &resolved.values {
             values.push(value);
             if options.gradient {
-                values.extend(derive::gradient(&mut graph, value, &variables));
+                let gradient = derive::gradient_within(&mut graph, value, &variables, budget);
+                values.extend(gradient.map_err(Diagnostic::from)?);
             }
         }
         for (index, value) in values.iter().enumerate() {

@@ -44,7 +44,7 @@ impl<T: Real> IntervalKernel<T> {
         T: Compile,
     {
         let spec = function.box_spec(options)?;
-        let code = T::compile(&spec)?;
+        let code = T::compile(&spec, &function.budget())?;
         let uniforms = function.parameters().iter().flat_map(|parameter| ends::<T>(parameter.value)).collect();
         let outputs = function.outputs_of(options).into();
         let shared = Shared { code, uniforms, function: function.clone(), outputs };

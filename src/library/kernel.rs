@@ -5,11 +5,13 @@ use std::sync::Arc;
 use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::interval::Interval;
+use crate::kernel::Backend;
 use crate::kernel::Kernel;
 use crate::kernel::Packet;
 use crate::kernel::Real;
 use crate::library::Error;
 use crate::library::Function;
+use crate::limits::Budget;
 use crate::program::scene::Parameter;
 use crate::session;
 
@@ -18,8 +20,8 @@ pub trait Compile: Real + sealed::Sealed {
     /// Compiles a spec for this machine.
     ///
     /// # Errors
-    /// A fault of ours; a program that is too large is interpreted.
-    fn compile(spec: &Spec) -> Result<Arc<dyn Kernel<Self>>, Diagnostic>;
+    /// If it exceeds the budget, or for a fault of ours; a program that is too large to be compiled is interpreted.
+    fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<Self>>, Diagnostic>;
 }
 
 mod sealed {
@@ -29,14 +31,14 @@ mod sealed {
 }
 
 impl Compile for f64 {
-    fn compile(spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
-        session::backend().compile_f64(spec)
+    fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
+        session::Within(budget).compile_f64(spec)
     }
 }
 
 impl Compile for f32 {
-    fn compile(spec: &Spec) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
-        session::backend().compile_f32(spec)
+    fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
+        session::Within(budget).compile_f32(spec)
     }
 }
 

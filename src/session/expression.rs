@@ -173,7 +173,7 @@ impl Workspace {
     }
 
     fn context<'a>(&'a self, budget: &'a Budget) -> Context<'a> {
-        Context { importer: &self.files, differentiate: &derive::derivative, overrides: &[], budget }
+        Context { importer: &self.files, differentiate: &derive::derivative_within, overrides: &[], budget }
     }
 
     /// What reading a text may cost.
