@@ -154,10 +154,7 @@ fn c_programs_compute_what_the_library_does() {
     let boxes: [[Vec<f64>; 2]; 2] = {
         let column = |at: fn(usize) -> f64| (0..37).map(at).collect::<Vec<f64>>();
         [
-            [
-                column(|i| -3.0 + 0.17 * i as f64),
-                column(|i| -3.0 + 0.17 * i as f64 + (i % 3) as f64 * 0.1),
-            ],
+            [column(|i| -3.0 + 0.17 * i as f64), column(|i| -3.0 + 0.17 * i as f64 + (i % 3) as f64 * 0.1)],
             [
                 column(|i| if i == 5 { f64::NAN } else { [0.1 * i as f64, 1.0][usize::from(i == 6)] }),
                 column(|i| if i == 7 { f64::INFINITY } else { [0.1 * i as f64 + 0.05, 0.5][usize::from(i == 6)] }),
@@ -226,7 +223,8 @@ fn rust_programs_need_no_crate() {
     let folder = built(RING, &[]);
     fs::write(folder.path().join("main.rs"), RUST).unwrap();
     let rustc = std::env::var("RUSTC").unwrap_or("rustc".to_owned());
-    let arguments = ["--edition", "2024", "-D", "warnings", "main.rs", "-L", ".", "-l", "static=ring", "-l", "m", "-o", "main"];
+    let arguments =
+        ["--edition", "2024", "-D", "warnings", "main.rs", "-L", ".", "-l", "static=ring", "-l", "m", "-o", "main"];
     done(folder.path(), &rustc, &arguments);
     done(folder.path(), folder.path().join("main").to_str().unwrap(), &[]);
 }
