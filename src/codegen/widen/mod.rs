@@ -135,7 +135,6 @@ pub fn widen(code: &[u8], registers: Registers) -> Option<Wide> {
                 steps.push(new.into());
             }
             (None, false, _) => {
-                masks.forget_memory();
                 if instruction.mnemonic() == Mnemonic::Ret {
                     // The upper halves must be clean when code without VEX runs again.
                     steps.push(Instruction::with(Code::VEX_Vzeroupper).into());
