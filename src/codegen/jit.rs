@@ -40,7 +40,10 @@ impl Format for f64 {
 /// Which registers a kernel uses. No result depends on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Width {
-    /// Those with which kernels run fastest on this machine.
+    /// Those with which kernels run fastest on this machine: the widest that it has. On a Zen 4, which computes 512 bits in
+    /// two halves, 512-bit registers took 0.54 to 0.91 of the time of 256-bit ones in each of 96 kernels (polynomials,
+    /// elementary functions, CSG; intervals, gradients, affine forms; both precisions), 0.68 in the geometric mean: there
+    /// are twice as many registers, so that little is spilled, and half as many instructions.
     Best,
     /// 128 bits, as Cranelift emits.
     Narrow,

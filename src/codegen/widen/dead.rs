@@ -146,21 +146,19 @@ pub fn remove(steps: &mut Vec<Step>, targets: &[u64]) {
     let across: Set = if carried { !0 } else { 0 };
 
     let mut live = across;
-    let mut kept: Vec<Step> = Vec::with_capacity(steps.len());
-    for step in steps.iter().rev() {
+    for step in steps.iter_mut().rev() {
         if ends(step) {
             live = across;
         }
         let written = writes(&step.instruction);
-        if step.optional && written & live == 0 {
-            continue;
+        // Wanted after all.
+        step.optional &= written & live == 0;
+        if !step.optional {
+            live = live & !written | reads(&step.instruction);
         }
-        live = live & !written | reads(&step.instruction);
-        kept.push(*step);
         if starts(step) {
             live = across;
         }
     }
-    kept.reverse();
-    *steps = kept;
+    steps.retain(|step| !step.optional);
 }

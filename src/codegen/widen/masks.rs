@@ -6,7 +6,6 @@
 
 use iced_x86::Code;
 use iced_x86::Instruction;
-use iced_x86::MemoryOperand;
 use iced_x86::Mnemonic;
 use iced_x86::OpKind;
 use iced_x86::Register;
@@ -46,36 +45,12 @@ enum Known {
     Otherwise(Half),
 }
 
-/// What a value was combined with, a full mask, and where it still is; nowhere else but in the result, if `None`.
+/// What a value was combined with, a full mask, and the register where it still is; nowhere else but in the result, if
+/// `None`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Half {
     mask: Opmask,
-    value: Option<Place>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
-    Register(Register),
-    Memory(MemoryOperand),
-}
-
-impl Place {
-    /// An operand of an instruction of the old code.
-    fn of(old: &Instruction, operand: u32) -> Option<Self> {
-        match old.op_kind(operand) {
-            OpKind::Register => Some(Self::Register(old.op_register(operand))),
-            OpKind::Memory => Some(Self::Memory(MemoryOperand::new(
-                old.memory_base(),
-                old.memory_index(),
-                old.memory_index_scale(),
-                old.memory_displacement64() as i64,
-                old.memory_displ_size(),
-                false,
-                old.segment_prefix(),
-            ))),
-            _ => None,
-        }
-    }
+    value: Option<Register>,
 }
 
 /// Follows the masks through straight code.
@@ -98,21 +73,6 @@ impl Masks {
         self.known = [Known::Nothing; 32];
     }
 
-    /// Memory, or an address in it, may change.
-    pub fn forget_memory(&mut self) {
-        self.forget_values(|place| matches!(place, Place::Memory(_)));
-    }
-
-    fn forget_values(&mut self, changed: impl Fn(Place) -> bool) {
-        for known in &mut self.known {
-            if let Known::Chosen(half) | Known::Otherwise(half) = known
-                && half.value.is_some_and(&changed)
-            {
-                half.value = None;
-            }
-        }
-    }
-
     fn of(&self, register: Register) -> Known {
         self.known[index(register)]
     }
@@ -128,7 +88,13 @@ impl Masks {
     /// A register was written, and this is known of it now.
     fn set(&mut self, register: Register, known: Known) {
         self.known[index(register)] = known;
-        self.forget_values(|place| place == Place::Register(register));
+        for known in &mut self.known {
+            if let Known::Chosen(half) | Known::Otherwise(half) = known
+                && half.value == Some(register)
+            {
+                half.value = None;
+            }
+        }
     }
 
     /// A register was written with what is no mask.
@@ -174,10 +140,8 @@ impl Masks {
                 let new = lanewise(old, Registers::Zmm)?;
                 let moves = new.code() == Code::EVEX_Vmovups_zmm_k1z_zmmm512;
                 steps.push(Step { instruction: new, optional: moves });
-                match old.op0_kind() {
-                    OpKind::Register if moves => self.set(old.op0_register(), self.operand(old, 1)),
-                    OpKind::Register => self.set(old.op0_register(), Known::Nothing),
-                    _ => self.forget_memory(),
+                if old.op0_kind() == OpKind::Register {
+                    self.set(old.op0_register(), if moves { self.operand(old, 1) } else { Known::Nothing });
                 }
                 Some(())
             }
@@ -262,24 +226,22 @@ impl Masks {
             {
                 let swapped = matches!(a, Known::Otherwise(_));
                 let (chosen, otherwise) = if swapped { (2, 1) } else { (1, 2) };
-                let chosen = x.value.or_else(|| Place::of(old, chosen))?;
-                let otherwise = match y.value {
-                    Some(Place::Register(register)) => register,
-                    // A blend takes this one from a register only; the result holds it wherever it is wanted.
-                    _ => old.op_register(otherwise),
-                };
+                let chosen = x.value.unwrap_or_else(|| old.op_register(chosen));
+                let otherwise = y.value.unwrap_or_else(|| old.op_register(otherwise));
                 steps.push(select(to, x.mask, chosen, otherwise)?.into());
                 self.set(to, Known::Nothing);
             }
             (Known::Mask(mask), _) if mask.full && on_masks == Code::VEX_Kandnw_kr_kr_kr => {
                 steps.push(Step { instruction, optional: true });
-                self.set(to, Known::Otherwise(Half { mask, value: Place::of(old, 2) }));
+                self.set(to, Known::Otherwise(Half { mask, value: register(old, 2) }));
             }
             (Known::Mask(mask), _) if mask.full && on_masks == Code::VEX_Kandw_kr_kr_kr => {
-                self.choose(to, mask, Place::of(old, 2)?, steps)?;
+                steps.push(Step { instruction: chosen(old, mask, 2)?, optional: true });
+                self.set(to, Known::Chosen(Half { mask, value: register(old, 2) }));
             }
             (_, Known::Mask(mask)) if mask.full && on_masks == Code::VEX_Kandw_kr_kr_kr => {
-                self.choose(to, mask, Place::of(old, 1)?, steps)?;
+                steps.push(Step { instruction: chosen(old, mask, 1)?, optional: true });
+                self.set(to, Known::Chosen(Half { mask, value: register(old, 1) }));
             }
             _ => {
                 steps.push(instruction.into());
@@ -288,38 +250,39 @@ impl Masks {
         }
         Some(())
     }
+}
 
-    /// `mask & value`: the value where the mask is set, zero elsewhere.
-    fn choose(&mut self, to: Register, mask: Opmask, value: Place, steps: &mut Vec<Step>) -> Option<()> {
-        let code = match mask.grain {
-            Grain::Double => Code::EVEX_Vmovdqu64_zmm_k1z_zmmm512,
-            _ => Code::EVEX_Vmovdqu32_zmm_k1z_zmmm512,
-        };
-        let zmm = Registers::Zmm.of(to)?;
-        let mut instruction = match value {
-            Place::Register(register) => Instruction::with2(code, zmm, Registers::Zmm.of(register)?),
-            Place::Memory(memory) => Instruction::with2(code, zmm, memory),
-        }
-        .ok()?;
-        instruction.set_op_mask(mask.k);
-        instruction.set_zeroing_masking(true);
-        steps.push(Step { instruction, optional: true });
-        self.set(to, Known::Chosen(Half { mask, value: Some(value) }));
-        Some(())
-    }
+/// `mask & value`, the value being an operand of `old`: that where the mask is set, zero elsewhere.
+fn chosen(old: &Instruction, mask: Opmask, operand: u32) -> Option<Instruction> {
+    let mut new = *old;
+    new.set_code(match mask.grain {
+        Grain::Double => Code::EVEX_Vmovdqu64_zmm_k1z_zmmm512,
+        _ => Code::EVEX_Vmovdqu32_zmm_k1z_zmmm512,
+    });
+    new.set_op0_register(Registers::Zmm.of(old.op0_register())?);
+    new.set_op1_kind(old.op_kind(operand));
+    new.set_op2_kind(OpKind::Register);
+    new.set_op2_register(Register::None);
+    new.set_op1_register(match register(old, operand) {
+        Some(register) => Registers::Zmm.of(register)?,
+        None => Register::None,
+    });
+    new.set_op_mask(mask.k);
+    new.set_zeroing_masking(true);
+    Some(new)
 }
 
 /// `chosen` where the mask is set, `otherwise` elsewhere.
-fn select(to: Register, mask: Opmask, chosen: Place, otherwise: Register) -> Option<Instruction> {
+fn select(to: Register, mask: Opmask, chosen: Register, otherwise: Register) -> Option<Instruction> {
     let zmm = |register| Registers::Zmm.of(register);
-    let code = blend_code(mask.grain);
-    let mut blend = match chosen {
-        Place::Register(register) => Instruction::with3(code, zmm(to)?, zmm(otherwise)?, zmm(register)?),
-        Place::Memory(memory) => Instruction::with3(code, zmm(to)?, zmm(otherwise)?, memory),
-    }
-    .ok()?;
+    let mut blend = Instruction::with3(blend_code(mask.grain), zmm(to)?, zmm(otherwise)?, zmm(chosen)?).ok()?;
     blend.set_op_mask(mask.k);
     Some(blend)
+}
+
+/// The register that an operand is.
+fn register(old: &Instruction, operand: u32) -> Option<Register> {
+    (old.op_kind(operand) == OpKind::Register).then(|| old.op_register(operand))
 }
 
 fn index(register: Register) -> usize {

@@ -17,21 +17,18 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use iced_x86::BlockEncoder;
-use iced_x86::BlockEncoderOptions;
 use iced_x86::Code;
 use iced_x86::Decoder;
 use iced_x86::DecoderOptions;
+use iced_x86::Encoder;
 use iced_x86::Instruction;
-use iced_x86::InstructionBlock;
 use iced_x86::Mnemonic;
 use iced_x86::OpKind;
 use iced_x86::Register;
 
 use crate::codegen::emit::MAX_FRAME;
 
-/// Where the old code is thought to start, and the new constants, followed by the new code. The two ranges must not
-/// overlap: the encoder takes an address of the old range for a jump target.
+/// Where the old code is thought to start, and the new constants, followed by the new code.
 const OLD: u64 = 0x1_0000_0000;
 const NEW: u64 = 0x2_0000_0000;
 
@@ -124,12 +121,10 @@ pub fn widen(code: &[u8], registers: Registers) -> Option<Wide> {
     let mut masks = masks::Masks::default();
     let mut uniforms = Uniforms::default();
     let mut steps: Vec<Step> = Vec::with_capacity(old.len() + old.len() / 4);
-    let mut reached = 0;
     for Old { instruction, vector } in &old {
         let first = steps.len();
         let target = targets.binary_search(&instruction.ip()).is_ok();
         if target {
-            reached += 1;
             masks.forget();
             uniforms.forget();
         }
@@ -140,14 +135,14 @@ pub fn widen(code: &[u8], registers: Registers) -> Option<Wide> {
                 steps.push(new.into());
             }
             (None, false, _) => {
-                masks.forget_memory();
                 if instruction.mnemonic() == Mnemonic::Ret {
                     // The upper halves must be clean when code without VEX runs again.
                     steps.push(Instruction::with(Code::VEX_Vzeroupper).into());
                 }
-                match frame.adjust(instruction)? {
-                    Some(adjusted) => steps.extend(adjusted),
-                    None => steps.push(scalar(instruction)?.into()),
+                if Frame::changes(instruction) {
+                    frame.change(instruction, &mut steps)?;
+                } else {
+                    steps.push(scalar(instruction)?.into());
                 }
             }
             (None, true, Registers::Ymm) => steps.push(lanewise(instruction, registers)?.into()),
@@ -155,24 +150,50 @@ pub fn widen(code: &[u8], registers: Registers) -> Option<Wide> {
         }
         for (i, step) in steps[first..].iter_mut().enumerate() {
             relocate(&mut step.instruction, &mut pool)?;
-            // Jumps find their targets by the old addresses.
+            // Jumps find their targets by the old addresses; 0 is none.
             step.instruction.set_ip(if i == 0 { instruction.ip() } else { 0 });
             step.optional &= !target;
         }
     }
-    if reached != targets.len() {
-        return None;
-    }
     if registers == Registers::Zmm {
         dead::remove(&mut steps, &targets);
     }
-    let new: Vec<Instruction> = steps.iter().map(|step| step.instruction).collect();
     let entry = pool.bytes.len();
-    let block = InstructionBlock::new(&new, NEW + entry as u64);
-    let encoded = BlockEncoder::encode(64, block, BlockEncoderOptions::NONE).ok()?;
     let mut bytes = pool.bytes;
-    bytes.extend(encoded.code_buffer);
+    bytes.extend(encode(&steps, &targets, NEW + entry as u64)?);
     Some(Wide { bytes, entry })
+}
+
+/// The machine code of the steps from an address on. `targets` are the old addresses, sorted, that are jumped to.
+fn encode(steps: &[Step], targets: &[u64], start: u64) -> Option<Vec<u8>> {
+    let mut encoder = Encoder::try_with_capacity(64, 8 * steps.len()).ok()?;
+    let mut places: Vec<Option<usize>> = vec![None; targets.len()];
+    // Where each jump ends, in its displacement of four bytes, and its target.
+    let mut jumps: Vec<(usize, usize)> = Vec::new();
+    let mut end = 0;
+    for Step { mut instruction, .. } in steps.iter().copied() {
+        let ip = start + end as u64;
+        if let Ok(target) = targets.binary_search(&instruction.ip()) {
+            places[target] = Some(end);
+        }
+        if instruction.op0_kind() == OpKind::NearBranch64 {
+            if !matches!(instruction.code(), Code::Je_rel32_64 | Code::Jne_rel32_64 | Code::Jmp_rel32_64) {
+                return None;
+            }
+            let target = targets.binary_search(&instruction.near_branch_target()).ok()?;
+            instruction.set_near_branch64(ip);
+            end += encoder.encode(&instruction, ip).ok()?;
+            jumps.push((end, target));
+        } else {
+            end += encoder.encode(&instruction, ip).ok()?;
+        }
+    }
+    let mut bytes = encoder.take_buffer();
+    for (end, target) in jumps {
+        let distance = i32::try_from(places[target]? as i64 - end as i64).ok()?;
+        bytes.get_mut(end - 4..end)?.copy_from_slice(&distance.to_le_bytes());
+    }
+    Some(bytes)
 }
 
 struct Old {
@@ -372,42 +393,43 @@ struct Frame {
 
 impl Frame {
     fn new(old: &[Old], registers: Registers) -> Self {
-        let is_sized = |old: &Old, mnemonic| {
-            old.instruction.mnemonic() == mnemonic && old.instruction.op0_register() == Register::RSP
-        };
+        let writes =
+            |old: &Old, register| old.instruction.op_count() == 2 && old.instruction.op0_register() == register;
         let keeps = |old: &Old| {
-            let mov = &old.instruction;
-            (mov.mnemonic(), mov.op0_register(), mov.op1_register()) == (Mnemonic::Mov, Register::RBP, Register::RSP)
+            let (mnemonic, from) = (old.instruction.mnemonic(), old.instruction.op1_register());
+            mnemonic == Mnemonic::Mov && writes(old, Register::RBP) && from == Register::RSP
         };
-        let count = |mnemonic| old.iter().filter(|old| is_sized(old, mnemonic)).count();
-        let kept = old.windows(2).any(|pair| keeps(&pair[0]) && is_sized(&pair[1], Mnemonic::Sub));
-        let once = [Mnemonic::Sub, Mnemonic::Add].map(count) == [1, 1];
-        let changes = |old: &Old| old.instruction.op0_register() == Register::RBP && old.instruction.op_count() == 2;
-        Self { registers, aligned: kept && once && old.iter().filter(|old| changes(old)).count() == 1 }
+        let makes = |old: &Old| Self::changes(&old.instruction) && old.instruction.mnemonic() == Mnemonic::Sub;
+        let count = |test: &dyn Fn(&Old) -> bool| old.iter().filter(|old| test(old)).count();
+        let kept = old.windows(2).any(|pair| keeps(&pair[0]) && makes(&pair[1]));
+        let once = count(&makes) == 1 && count(&|old| Self::changes(&old.instruction)) == 2;
+        Self { registers, aligned: kept && once && count(&|old| writes(old, Register::RBP)) == 1 }
     }
 
-    /// What makes the frame or gives it up in the new code, if that is what the old instruction does; nothing at all if the
-    /// frame is too large.
-    fn adjust(&self, old: &Instruction) -> Option<Option<Vec<Step>>> {
+    /// Whether an instruction makes the frame or gives it up.
+    fn changes(old: &Instruction) -> bool {
+        matches!(old.mnemonic(), Mnemonic::Sub | Mnemonic::Add) && old.op0_register() == Register::RSP
+    }
+
+    /// The same in the new code; `None` if the frame is too large.
+    fn change(&self, old: &Instruction, steps: &mut Vec<Step>) -> Option<()> {
         let make = old.mnemonic() == Mnemonic::Sub;
-        if !(make || old.mnemonic() == Mnemonic::Add) || old.op0_register() != Register::RSP {
-            return Some(None);
-        }
         if self.aligned && !make {
-            let restored = Instruction::with2(Code::Mov_r64_rm64, Register::RSP, Register::RBP).ok()?;
-            return Some(Some(vec![restored.into()]));
+            steps.push(Instruction::with2(Code::Mov_r64_rm64, Register::RSP, Register::RBP).ok()?.into());
+            return Some(());
         }
         let size = i32::try_from(old.immediate(1) as i64).ok()?.checked_mul(self.registers.copies() as i32)?;
+        // Alignment takes less than one register more.
         if size.unsigned_abs() > MAX_FRAME - self.registers.bytes() as u32 {
             return None;
         }
         let code = if make { Code::Sub_rm64_imm32 } else { Code::Add_rm64_imm32 };
-        let mut steps = vec![Instruction::with2(code, Register::RSP, size).ok()?.into()];
+        steps.push(Instruction::with2(code, Register::RSP, size).ok()?.into());
         if self.aligned {
             let boundary = -(self.registers.bytes() as i32);
             steps.push(Instruction::with2(Code::And_rm64_imm8, Register::RSP, boundary).ok()?.into());
         }
-        Some(Some(steps))
+        Some(())
     }
 }
 

@@ -193,17 +193,17 @@ fn check_both(seed: u64, length: usize, window: usize) -> usize {
         + check(&program(seed, Precision::Double, length, window), seed, DOUBLE)
 }
 
-fn can_run() -> bool {
-    let can = Registers::Zmm.available();
-    if !can {
-        eprintln!("no AVX-512 here: 512-bit code is compiled, but not run");
+fn say_what_runs() {
+    for registers in [Registers::Ymm, Registers::Zmm] {
+        if !registers.available() {
+            eprintln!("{registers:?}: code is made, but not run, since this machine has no such registers");
+        }
     }
-    can
 }
 
 #[test]
 fn random_programs_compute_the_same_bits_in_all_widths() {
-    can_run();
+    say_what_runs();
     let mut spilled = 0;
     for seed in 0..120 {
         let (length, window) = [(24, 4), (60, 8), (120, 30), (300, 120)][seed as usize % 4];
@@ -215,8 +215,46 @@ fn random_programs_compute_the_same_bits_in_all_widths() {
 /// Enough live values for the allocator that is linear in the program's length.
 #[test]
 fn large_programs_compute_the_same_bits_in_all_widths() {
-    can_run();
+    say_what_runs();
     for seed in 0..3 {
         assert!(check_both(1000 + seed, 4000, 3000) > 1000);
     }
+}
+
+/// `push rbp; mov rbp, rsp; sub rsp, size; add rsp, size; pop rbp; ret`
+fn with_frame(size: u32) -> Vec<u8> {
+    let size = size.to_le_bytes();
+    let parts: [&[u8]; 6] = [&[0x55], &[0x48, 0x89, 0xe5], &[0x48, 0x81, 0xec], &size, &[0x48, 0x81, 0xc4], &size];
+    let mut code = parts.concat();
+    code.extend([0x5d, 0xc3]);
+    code
+}
+
+/// What fits in narrow registers may not in wide ones: then narrower code runs, on every machine.
+#[test]
+fn frames_stay_within_the_limit() {
+    let fits = |size, registers| widen(&with_frame(size), registers).is_some();
+    assert!(fits(0x1000, Registers::Ymm) && fits(0x1000, Registers::Zmm));
+    assert!(fits(0x60000, Registers::Ymm) && !fits(0x60000, Registers::Zmm));
+    assert!(!fits(emit::MAX_FRAME, Registers::Ymm) && !fits(emit::MAX_FRAME, Registers::Zmm));
+}
+
+#[test]
+fn what_is_not_known_to_be_lane_wise_is_declined() {
+    let declined: [(&str, &[u8]); 6] = [
+        ("vbroadcastss xmm0, xmm1, of a vector", &[0xc4, 0xe2, 0x79, 0x18, 0xc1]),
+        ("vpshufd xmm0, xmm1, 0x44, of a vector", &[0xc5, 0xf9, 0x70, 0xc1, 0x44]),
+        ("vhaddps xmm0, xmm0, xmm1", &[0xc5, 0xfb, 0x7c, 0xc1]),
+        ("vpslld xmm0, xmm0, xmm1", &[0xc5, 0xf9, 0xf2, 0xc1]),
+        ("vmovmskps eax, xmm0", &[0xc5, 0xf8, 0x50, 0xc0]),
+        ("cpuid", &[0x0f, 0xa2]),
+    ];
+    for (what, code) in declined {
+        for registers in [Registers::Ymm, Registers::Zmm] {
+            assert!(widen(&[code, &[0xc3]].concat(), registers).is_none(), "{what}, {registers:?}");
+        }
+    }
+    // After `vmovss xmm1, [rdx]` the broadcast is that of a uniform.
+    let uniform = [0xc5, 0xfa, 0x10, 0x0a, 0xc4, 0xe2, 0x79, 0x18, 0xc1, 0xc3];
+    assert!(widen(&uniform, Registers::Ymm).is_some() && widen(&uniform, Registers::Zmm).is_some());
 }
