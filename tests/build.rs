@@ -239,7 +239,7 @@ fn what_cannot_be_exported_is_said() {
     assert!(said.contains("`f'` is called `f_prime`") && said.contains("`move` is called `move_` in Rust"), "{said}");
     assert!(said.contains("`inside` is left out"), "{said}");
     let header = fs::read_to_string(folder.path().join("a.h")).unwrap();
-    assert!(header.contains("a_b_f_prime_interval") && header.contains("a_b_move_value") && !header.contains("inside"));
+    assert!(header.contains("a_b_f_prime_interval") && header.contains("a_b_move_value") && !header.contains("a_b_inside"));
 }
 
 #[test]
