@@ -156,6 +156,31 @@
 //!
 //! ## Roots
 //!
+//! [`Function::roots`] finds all zeros in an interval. Each bracket is proved to hold one, and nothing else outside of what is
+//! said to be unknown. [`Function::root_finder`] compiles the search once for many values of the other variables and parameters,
+//! [`Function::ray_finder`] for many lines through space:
+//!
+//! ```
+//! use glam::DVec3;
+//! use imp::{Interval, Program};
+//!
+//! let interval = |lo, hi| Interval::new(lo, hi).expect("the ends are in order");
+//! let program = Program::parse("fn kepler(e, m, u) = u - e sin(u) - m\n surface ball: x^2 + y^2 + z^2 = 1")?;
+//! let mut orbit = program.function("kepler")?.root_finder("u")?;
+//! orbit.set("e", Interval::point(0.5))?;
+//! for m in [0.5, 1.0, 1.5] {
+//!     orbit.set("m", Interval::point(m))?;
+//!     let found = orbit.roots(interval(0.0, 7.0));
+//!     assert!(found.is_complete() && found.proved.len() == 1);
+//!     assert!(found.proved[0].bracket.width() < 1e-14);
+//! }
+//! let rays = program.function("ball")?.ray_finder()?;
+//! let (eye, towards) = (DVec3::new(0.0, 0.0, 5.0), DVec3::NEG_Z);
+//! let hits = rays.roots(&eye.to_array(), &towards.to_array(), interval(0.0, 100.0))?;
+//! assert!(hits.first().expect("the ray meets the ball").bracket.contains(4.0));
+//! # Ok::<(), imp::Error>(())
+//! ```
+//!
 //! ## Pictures and arrangements
 //!
 //! A program with shapes is a scene. [`Program::render`] draws it, and says of every pixel what is proved;
@@ -297,5 +322,7 @@ pub use library::Loader;
 pub use library::Options;
 pub use library::PointKernel;
 pub use library::Program;
+pub use library::RayFinder;
+pub use library::RootFinder;
 pub use library::Verdict;
 pub use limits::Limits;

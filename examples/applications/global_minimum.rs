@@ -14,7 +14,7 @@ mod objectives;
 use std::error::Error;
 use std::time::Instant;
 
-use branch::Box;
+use branch::Area;
 use branch::heaps;
 use branch::minimise;
 use objectives::Compiled;
@@ -27,7 +27,7 @@ use rayon::ThreadPoolBuilder;
 /// Boxes are split until no side is longer.
 const RESOLUTION: f64 = 1e-8;
 
-fn main() -> Result<(), std::boxed::Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "{:<12} {:<9} {:<25} {:>6} {:>8} {:>10} {:>10} {:>10}",
         "function", "variables", "minimum lies in", "places", "boxes", "compile", "1 thread", "all"
@@ -40,7 +40,7 @@ fn main() -> Result<(), std::boxed::Box<dyn Error>> {
     Ok(())
 }
 
-fn search<const N: usize>(name: &str, side: [f64; 2]) -> Result<(), std::boxed::Box<dyn Error>> {
+fn search<const N: usize>(name: &str, side: [f64; 2]) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let compiled = Compiled::new::<N>(&formula(name, N))?;
     let compiling = start.elapsed();
@@ -67,7 +67,7 @@ fn search<const N: usize>(name: &str, side: [f64; 2]) -> Result<(), std::boxed::
     let known = minimisers::<N>(name);
     assert_eq!(places.len(), known.len());
     for point in known {
-        let near = |place: &Box<N>| place.iter().zip(point).all(|(s, x)| s[0] - 1e-12 <= x && x <= s[1] + 1e-12);
+        let near = |place: &Area<N>| place.iter().zip(point).all(|(s, x)| s[0] - 1e-12 <= x && x <= s[1] + 1e-12);
         assert_eq!(places.iter().filter(|place| near(place)).count(), 1, "{point:?}");
     }
     Ok(())

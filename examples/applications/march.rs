@@ -65,13 +65,15 @@ impl Scene {
 
     /// With sliders: the program that is compiled once.
     fn with_sliders() -> Result<Self, imp::Error> {
-        let parameters = SLIDERS.map(|(name, [lo, hi])| format!("param {name} = {} in [{lo}, {hi}]\n", 0.5 * lo + 0.5 * hi));
+        let parameters =
+            SLIDERS.map(|(name, [lo, hi])| format!("param {name} = {} in [{lo}, {hi}]\n", 0.5 * lo + 0.5 * hi));
         Self::compile(&(parameters.concat() + SCENE))
     }
 
     /// With the sliders' values written into it.
     fn with_constants(sliders: [f64; 4]) -> Result<Self, imp::Error> {
-        let constants: Vec<_> = SLIDERS.iter().zip(sliders).map(|((name, _), value)| format!("let {name} = {value}\n")).collect();
+        let constants: Vec<_> =
+            SLIDERS.iter().zip(sliders).map(|((name, _), value)| format!("let {name} = {value}\n")).collect();
         Self::compile(&(constants.concat() + SCENE))
     }
 
@@ -270,8 +272,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         last = Some(frame);
     }
     let each = 1e3 * time.as_secs_f64() / frames as f64;
-    println!("{frames} frames of {width} by {height}: {each:.2} ms each, {:.0} a second; all from one compilation", 1e3 / each);
-    println!("slope proved at most {:.2} to {:.2}; {differing} frames differ from the one before", slopes[0], slopes[1]);
+    println!(
+        "{frames} frames of {width} by {height}: {each:.2} ms each, {:.0} a second; all from one compilation",
+        1e3 / each
+    );
+    println!(
+        "slope proved at most {:.2} to {:.2}; {differing} frames differ from the one before",
+        slopes[0], slopes[1]
+    );
     println!("no ray went through the surface ({checked} points tried)");
     assert!(slopes[1] < 20.0 && differing == frames);
 

@@ -61,7 +61,7 @@ impl Backend for Bounded<'_> {
 fn compile_within<T: jit::Format>(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<T>>, Diagnostic> {
     let program = spec.lower_within(T::PRECISION, budget)?;
     budget.time()?;
-    Ok(Arc::new(jit::JitKernel::<T>::new(&program, spec.rounding, Width::Widest)?))
+    Ok(Arc::new(jit::JitKernel::<T>::new(&program, spec.rounding, Width::Best)?))
 }
 
 /// The compiler for registers of a given width: widened kernels must equal narrow ones bit for bit, and are timed against

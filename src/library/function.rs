@@ -124,6 +124,11 @@ impl Function {
         &self.resolved.values
     }
 
+    /// The variables' names in [`Function::graph`].
+    pub(super) fn inputs(&self) -> &[String] {
+        &self.resolved.inputs
+    }
+
     /// Bounds over boxes, in double precision.
     ///
     /// # Errors

@@ -22,6 +22,7 @@ use crate::library::kernel::Compile;
 use crate::library::kernel::LaneOf;
 use crate::library::kernel::Shared;
 use crate::library::kernel::check;
+use crate::library::kernel::parameter;
 use crate::library::kernel::rows;
 
 /// Rows that one task of a parallel call computes.
@@ -66,7 +67,7 @@ impl<T: Real> IntervalKernel<T> {
     /// # Errors
     /// If there is no such parameter, or the value lies outside of its range, for which the code was made.
     pub fn set(&mut self, name: &str, value: Interval) -> Result<(), Error> {
-        let place = self.shared.parameter(name, value)?;
+        let place = parameter(&self.shared.function, name, value)?;
         self.shared.uniforms[2 * place..2 * place + 2].copy_from_slice(&ends::<T>(value));
         Ok(())
     }

@@ -12,7 +12,6 @@ use crate::kernel::Real;
 use crate::library::Error;
 use crate::library::Function;
 use crate::limits::Budget;
-use crate::program::scene::Parameter;
 use crate::session;
 
 /// The two formats for which kernels are compiled: `f64` and `f32`.
@@ -63,22 +62,6 @@ impl<T: Real> Shared<T> {
         self.function.variables().len()
     }
 
-    /// A parameter's place, if it can take a value.
-    pub fn parameter(&self, name: &str, value: Interval) -> Result<usize, Error> {
-        let parameters = self.function.parameters();
-        let Some(place) = parameters.iter().position(|parameter| parameter.name == name) else {
-            let known = parameters.iter().map(|parameter| parameter.name.clone()).collect();
-            return Err(Error::UnknownParameter { name: name.to_owned(), known });
-        };
-        let Parameter { range, .. } = parameters[place];
-        match range {
-            Some(range) if !range.contains_interval(value) || value.is_empty() => {
-                Err(Error::OutOfRange { name: name.to_owned(), value, range })
-            }
-            _ => Ok(place),
-        }
-    }
-
     /// Computes `count` rows: `fill` writes row i into a lane of its group's inputs, `take` reads it from a lane of the
     /// outputs.
     pub fn run(&self, count: usize, fill: impl Fn(usize, &mut Lane<T>), mut take: impl FnMut(usize, &LaneOf<T>)) {
@@ -114,6 +97,20 @@ impl<T: Real> Shared<T> {
                 take(start + row, &LaneOf { packets: &outputs[group..group + output_slots], lane: row % T::LANES });
             }
         }
+    }
+}
+
+/// A parameter's place, if it can take a value.
+pub fn parameter(function: &Function, name: &str, value: Interval) -> Result<usize, Error> {
+    let parameters = function.parameters();
+    let Some(place) = parameters.iter().position(|parameter| parameter.name == name) else {
+        let known = parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        return Err(Error::UnknownParameter { name: name.to_owned(), known });
+    };
+    let range = parameters[place].range.unwrap_or(Interval::ENTIRE);
+    match range.contains_interval(value) && !value.is_empty() {
+        true => Ok(place),
+        false => Err(Error::OutOfRange { name: name.to_owned(), value, range }),
     }
 }
 

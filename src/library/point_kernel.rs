@@ -11,6 +11,7 @@ use crate::library::Options;
 use crate::library::kernel::Compile;
 use crate::library::kernel::Shared;
 use crate::library::kernel::check;
+use crate::library::kernel::parameter;
 use crate::library::kernel::rows;
 
 /// A function compiled to compute its values at points, rounded to nearest: nothing is proved. NaN where it is undefined.
@@ -48,7 +49,7 @@ impl<T: Real> PointKernel<T> {
     /// # Errors
     /// If there is no such parameter, or the value lies outside of its range.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), Error> {
-        let place = self.shared.parameter(name, Interval::point(value))?;
+        let place = parameter(&self.shared.function, name, Interval::point(value))?;
         self.shared.uniforms[place] = T::nearest(value);
         Ok(())
     }

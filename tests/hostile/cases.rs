@@ -214,6 +214,9 @@ fn numbers() -> Vec<Case> {
             .harmless("numbers past 4096 bits are not folded"),
         text("product of k/(k+1)", |o| o.put("y = x").each(3_000, |k| format!("*{}/{}", k + 3, k + 2)))
             .harmless("numbers past 4096 bits are not folded"),
+        text("sums of long fractions", |o| {
+            o.put("let a = 1/3^1200\nlet b = 1/7^700\ny = 0").each(4_000, |i| format!("+(a+{i}b)x"))
+        }),
         text("pi to a power of 1000 digits", |o| o.put("y = x + pi^").times(1000, "7")),
         text("root of 2000 digits", |o| o.put("y = x + sqrt(").times(1000, "17").put(")")).harmless("one number"),
         text("x to a fraction of long numbers", |o| o.put("y = x^(").times(500, "7").put("/").times(500, "3").put(")")),
@@ -289,6 +292,14 @@ fn growth() -> Vec<Case> {
             o.put("let a0 = x + 1\n").each(2_500, |i| format!("let a{} = a{i} a{i}\n", i + 1)).put("y = a2500")
         })
         .harmless("2500 operations"),
+        text("many live values", |o| {
+            o.each(700, |i| format!("let a{i} = {i}x + y^{}\n", i % 7 + 2))
+                .put("y = 0")
+                .each(700, |i| format!("+a{i} a{}", 699 - i))
+        })
+        .harmless("3500 operations"),
+        text("400 functions", |o| o.put("y = 0").each(400, |i| format!("+sin({i}x)"))).harmless("1600 operations"),
+        text("2000 products", |o| o.put("y = x").each(2_000, |i| format!("*(x-{i})"))).harmless("4000 operations"),
         text("deriv of deriv", |o| o.put("y = ").times(30, "deriv(").put("sin(x)exp(x)").times(30, ", x)")),
         text("deriv of deriv of a quotient", |o| {
             o.put("y = ").times(12, "deriv(").put("sin(x^2)/(1 + exp(x)^x)").times(12, ", x)")

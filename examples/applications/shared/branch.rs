@@ -21,7 +21,7 @@ const LANES: usize = <f64 as Real>::LANES;
 const GROUPS: usize = 2 * CHUNK / LANES;
 
 /// Lower and upper end of each coordinate.
-pub type Box<const N: usize> = [[f64; 2]; N];
+pub type Area<const N: usize> = [[f64; 2]; N];
 /// The negated lower ends and the upper ends of one coordinate of eight boxes.
 pub type Side = [Packet<f64>; 2];
 /// The negated lower ends, the upper ends and the verdicts of eight enclosures.
@@ -43,7 +43,7 @@ pub struct Minimum<const N: usize> {
     /// The minimum lies between these.
     pub value: [f64; 2],
     /// Every minimiser lies in one of these.
-    pub boxes: Vec<Box<N>>,
+    pub boxes: Vec<Area<N>>,
     /// Boxes on which the function and its derivatives were enclosed.
     pub differentiated: usize,
     /// Boxes and points at which the function alone was enclosed.
@@ -57,9 +57,9 @@ struct Entry {
 }
 
 /// The minimum of `f` over `domain`; boxes are split until no side is longer than `resolution`.
-pub fn minimise<const N: usize>(f: &impl Objective<N>, domain: Box<N>, resolution: f64) -> Minimum<N> {
+pub fn minimise<const N: usize>(f: &impl Objective<N>, domain: Area<N>, resolution: f64) -> Minimum<N> {
     let mut found = Minimum { value: [f64::INFINITY; 2], boxes: Vec::new(), differentiated: 0, evaluated: 0 };
-    let mut finished: Vec<(f64, Box<N>)> = Vec::new();
+    let mut finished: Vec<(f64, Area<N>)> = Vec::new();
     let mut boxes = vec![domain];
     let mut free: Vec<u32> = Vec::new();
     let mut list = vec![Entry { bound: f64::NEG_INFINITY, place: 0 }];
@@ -119,8 +119,8 @@ struct Outcome<const N: usize> {
     upper: f64,
     /// Whether that is less than what was known before.
     better: bool,
-    open: Vec<(f64, Box<N>)>,
-    finished: Vec<(f64, Box<N>)>,
+    open: Vec<(f64, Area<N>)>,
+    finished: Vec<(f64, Area<N>)>,
     differentiated: usize,
     evaluated: usize,
 }
@@ -130,7 +130,7 @@ struct Buffers<const N: usize> {
     middles: Vec<Side>,
     values: Vec<Bounds>,
     slopes: Vec<Bounds>,
-    children: Vec<(f64, Box<N>)>,
+    children: Vec<(f64, Area<N>)>,
 }
 
 impl<const N: usize> Buffers<N> {
@@ -148,9 +148,9 @@ impl<const N: usize> Buffers<N> {
 
 struct Search<'a, const N: usize, F> {
     f: &'a F,
-    domain: &'a Box<N>,
+    domain: &'a Area<N>,
     resolution: f64,
-    boxes: &'a [Box<N>],
+    boxes: &'a [Area<N>],
 }
 
 impl<const N: usize, F: Objective<N>> Search<'_, N, F> {
@@ -219,7 +219,7 @@ impl<const N: usize, F: Objective<N>> Search<'_, N, F> {
 }
 
 /// Boxes into packets; what is left of the last group repeats the first box.
-fn gather<'a, const N: usize>(packets: &mut [Side], boxes: impl ExactSizeIterator<Item = &'a Box<N>> + Clone) {
+fn gather<'a, const N: usize>(packets: &mut [Side], boxes: impl ExactSizeIterator<Item = &'a Area<N>> + Clone) {
     let count = boxes.len();
     let padding = boxes.clone().cycle().take(count.next_multiple_of(LANES));
     for (k, area) in padding.enumerate() {
@@ -268,7 +268,7 @@ fn narrow_by_sign(side: &mut [f64; 2], domain: [f64; 2], slope: [f64; 2]) -> boo
 }
 
 /// Halves the side along which the function may vary most, or the longest if that is not known.
-fn split<const N: usize>(area: &Box<N>, resolution: f64, slopes: [f64; N], mut child: impl FnMut(Box<N>)) {
+fn split<const N: usize>(area: &Area<N>, resolution: f64, slopes: [f64; N], mut child: impl FnMut(Area<N>)) {
     let known = slopes.iter().all(|slope| slope.is_finite());
     let mut best = None;
     for (i, [lo, hi]) in area.iter().enumerate() {
@@ -291,22 +291,22 @@ fn split<const N: usize>(area: &Box<N>, resolution: f64, slopes: [f64; N], mut c
 }
 
 /// Touching boxes together: the hull of each heap of them, in the order of their first coordinates.
-pub fn heaps<const N: usize>(boxes: &[Box<N>]) -> Vec<Box<N>> {
-    let touch = |a: &Box<N>, b: &Box<N>| a.iter().zip(b).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1]);
-    let mut heaps: Vec<Vec<Box<N>>> = Vec::new();
+pub fn heaps<const N: usize>(boxes: &[Area<N>]) -> Vec<Area<N>> {
+    let touch = |a: &Area<N>, b: &Area<N>| a.iter().zip(b).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1]);
+    let mut heaps: Vec<Vec<Area<N>>> = Vec::new();
     for area in boxes {
         let (touched, mut apart): (Vec<_>, Vec<_>) =
-            heaps.into_iter().partition(|heap: &Vec<Box<N>>| heap.iter().any(|other| touch(area, other)));
+            heaps.into_iter().partition(|heap: &Vec<Area<N>>| heap.iter().any(|other| touch(area, other)));
         apart.push(touched.into_iter().flatten().chain([*area]).collect());
         heaps = apart;
     }
-    let hull = |heap: Vec<Box<N>>| -> Box<N> {
+    let hull = |heap: Vec<Area<N>>| -> Area<N> {
         std::array::from_fn(|i| {
-            let ends = |lo: f64, hi: f64, area: &Box<N>| [lo.min(area[i][0]), hi.max(area[i][1])];
+            let ends = |lo: f64, hi: f64, area: &Area<N>| [lo.min(area[i][0]), hi.max(area[i][1])];
             heap.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], area| ends(lo, hi, area))
         })
     };
-    let mut hulls: Vec<Box<N>> = heaps.into_iter().map(hull).collect();
+    let mut hulls: Vec<Area<N>> = heaps.into_iter().map(hull).collect();
     hulls.sort_by(|a, b| a.iter().flatten().partial_cmp(b.iter().flatten()).unwrap_or(std::cmp::Ordering::Equal));
     hulls
 }

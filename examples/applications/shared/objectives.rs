@@ -7,8 +7,9 @@ use imp::IntervalKernel;
 use imp::Options;
 use imp::Program;
 
+use crate::branch::Area;
 use crate::branch::Bounds;
-use crate::branch::Box;
+
 use crate::branch::Objective;
 use crate::branch::Side;
 
@@ -72,6 +73,6 @@ impl<const N: usize> Objective<N> for Compiled {
 }
 
 /// The same domain for each variable.
-pub fn cube<const N: usize>(side: [f64; 2]) -> Box<N> {
+pub fn cube<const N: usize>(side: [f64; 2]) -> Area<N> {
     [side; N]
 }

@@ -81,21 +81,21 @@ impl Place {
 /// Follows the masks through straight code.
 pub struct Masks {
     /// By the register's number.
-    known: [Known; 16],
+    known: [Known; 32],
     /// The opmask register that is given out next, 1 to 7.
     next: u32,
 }
 
 impl Default for Masks {
     fn default() -> Self {
-        Self { known: [Known::Nothing; 16], next: 1 }
+        Self { known: [Known::Nothing; 32], next: 1 }
     }
 }
 
 impl Masks {
     /// Where a jump may arrive, nothing is known.
     pub fn forget(&mut self) {
-        self.known = [Known::Nothing; 16];
+        self.known = [Known::Nothing; 32];
     }
 
     /// Memory, or an address in it, may change.
@@ -172,11 +172,10 @@ impl Masks {
             Vxorps | Vxorpd | Vpxor => self.logic(old, Code::VEX_Kxorw_kr_kr_kr, steps),
             _ => {
                 let new = lanewise(old, Registers::Zmm)?;
-                steps.push(new.into());
+                let moves = new.code() == Code::EVEX_Vmovups_zmm_k1z_zmmm512;
+                steps.push(Step { instruction: new, optional: moves });
                 match old.op0_kind() {
-                    OpKind::Register if new.code() == Code::EVEX_Vmovups_zmm_k1z_zmmm512 => {
-                        self.set(old.op0_register(), self.operand(old, 1));
-                    }
+                    OpKind::Register if moves => self.set(old.op0_register(), self.operand(old, 1)),
                     OpKind::Register => self.set(old.op0_register(), Known::Nothing),
                     _ => self.forget_memory(),
                 }
@@ -324,7 +323,7 @@ fn select(to: Register, mask: Opmask, chosen: Place, otherwise: Register) -> Opt
 }
 
 fn index(register: Register) -> usize {
-    (register as usize).wrapping_sub(Register::XMM0 as usize) % 16
+    (register as usize).wrapping_sub(Register::XMM0 as usize) % 32
 }
 
 fn same_registers(old: &Instruction) -> bool {

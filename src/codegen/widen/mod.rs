@@ -10,6 +10,7 @@
 
 mod dead;
 mod masks;
+mod slots;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -113,7 +114,11 @@ impl From<Instruction> for Step {
 /// Widens a kernel emitted with a stride of `registers.bytes()`. `code` is the function followed by its constants; `None`
 /// if it holds anything that is not known to be lane-wise, or needs more stack in wide registers than a kernel may take.
 pub fn widen(code: &[u8], registers: Registers) -> Option<Wide> {
-    let old = decode(code)?;
+    let mut old = decode(code)?;
+    if registers == Registers::Zmm {
+        slots::to_registers(&mut old);
+    }
+    let frame = Frame::new(&old, registers);
     let targets = targets(&old);
     let mut pool = Pool { code, copies: registers.copies(), offsets: BTreeMap::new(), bytes: Vec::new() };
     let mut masks = masks::Masks::default();
@@ -140,7 +145,10 @@ pub fn widen(code: &[u8], registers: Registers) -> Option<Wide> {
                     // The upper halves must be clean when code without VEX runs again.
                     steps.push(Instruction::with(Code::VEX_Vzeroupper).into());
                 }
-                steps.push(scalar(instruction, registers)?.into());
+                match frame.adjust(instruction)? {
+                    Some(adjusted) => steps.extend(adjusted),
+                    None => steps.push(scalar(instruction)?.into()),
+                }
             }
             (None, true, Registers::Ymm) => steps.push(lanewise(instruction, registers)?.into()),
             (None, true, Registers::Zmm) => masks.widen(instruction, &mut steps)?,
@@ -226,7 +234,7 @@ impl Pool<'_> {
 /// The registers that hold one number, the same for all lanes, in their lowest lane: bit `i` for `xmm i`. Such a number is
 /// loaded to be broadcast, and where its load is no operand of the broadcast, it passes through a register.
 #[derive(Default)]
-struct Uniforms(u16);
+struct Uniforms(u32);
 
 impl Uniforms {
     /// Where a jump may arrive, nothing is known.
@@ -240,7 +248,7 @@ impl Uniforms {
         if old.op0_kind() != OpKind::Register || !old.op0_register().is_xmm() {
             return None;
         }
-        let bit = |register: Register| 1 << ((register as u32 - Register::XMM0 as u32) % 16);
+        let bit = |register: Register| 1 << ((register as u32 - Register::XMM0 as u32) % 32);
         let holds =
             old.op1_kind() == OpKind::Register && old.op1_register().is_xmm() && self.0 & bit(old.op1_register()) != 0;
         self.0 &= !bit(old.op0_register());
@@ -354,8 +362,57 @@ fn moved(old: &Instruction, registers: Registers) -> Option<Instruction> {
     renamed(new, registers)
 }
 
-/// Pointers, counters and the frame, which grows with all that lies in it.
-fn scalar(old: &Instruction, registers: Registers) -> Option<Instruction> {
+/// The stack frame, which grows with all that lies in it.
+struct Frame {
+    registers: Registers,
+    /// Spilled vectors lie at multiples of their size: a vector across two cache lines takes twice as long. This takes a
+    /// frame that is made once, right after its caller's end was kept in `rbp`, and given up once.
+    aligned: bool,
+}
+
+impl Frame {
+    fn new(old: &[Old], registers: Registers) -> Self {
+        let is_sized = |old: &Old, mnemonic| {
+            old.instruction.mnemonic() == mnemonic && old.instruction.op0_register() == Register::RSP
+        };
+        let keeps = |old: &Old| {
+            let mov = &old.instruction;
+            (mov.mnemonic(), mov.op0_register(), mov.op1_register()) == (Mnemonic::Mov, Register::RBP, Register::RSP)
+        };
+        let count = |mnemonic| old.iter().filter(|old| is_sized(old, mnemonic)).count();
+        let kept = old.windows(2).any(|pair| keeps(&pair[0]) && is_sized(&pair[1], Mnemonic::Sub));
+        let once = [Mnemonic::Sub, Mnemonic::Add].map(count) == [1, 1];
+        let changes = |old: &Old| old.instruction.op0_register() == Register::RBP && old.instruction.op_count() == 2;
+        Self { registers, aligned: kept && once && old.iter().filter(|old| changes(old)).count() == 1 }
+    }
+
+    /// What makes the frame or gives it up in the new code, if that is what the old instruction does; nothing at all if the
+    /// frame is too large.
+    fn adjust(&self, old: &Instruction) -> Option<Option<Vec<Step>>> {
+        let make = old.mnemonic() == Mnemonic::Sub;
+        if !(make || old.mnemonic() == Mnemonic::Add) || old.op0_register() != Register::RSP {
+            return Some(None);
+        }
+        if self.aligned && !make {
+            let restored = Instruction::with2(Code::Mov_r64_rm64, Register::RSP, Register::RBP).ok()?;
+            return Some(Some(vec![restored.into()]));
+        }
+        let size = i32::try_from(old.immediate(1) as i64).ok()?.checked_mul(self.registers.copies() as i32)?;
+        if size.unsigned_abs() > MAX_FRAME - self.registers.bytes() as u32 {
+            return None;
+        }
+        let code = if make { Code::Sub_rm64_imm32 } else { Code::Add_rm64_imm32 };
+        let mut steps = vec![Instruction::with2(code, Register::RSP, size).ok()?.into()];
+        if self.aligned {
+            let boundary = -(self.registers.bytes() as i32);
+            steps.push(Instruction::with2(Code::And_rm64_imm8, Register::RSP, boundary).ok()?.into());
+        }
+        Some(Some(steps))
+    }
+}
+
+/// Pointers and counters.
+fn scalar(old: &Instruction) -> Option<Instruction> {
     use Mnemonic::*;
     let touches_vectors =
         (0..old.op_count()).any(|i| old.op_kind(i) == OpKind::Register && old.op_register(i).is_vector_register());
@@ -363,14 +420,6 @@ fn scalar(old: &Instruction, registers: Registers) -> Option<Instruction> {
         return None;
     }
     match old.mnemonic() {
-        Add | Sub if old.op0_register() == Register::RSP => {
-            let size = i32::try_from(old.immediate(1) as i64).ok()?.checked_mul(registers.copies() as i32)?;
-            if size.unsigned_abs() > MAX_FRAME {
-                return None;
-            }
-            let code = if old.mnemonic() == Add { Code::Add_rm64_imm32 } else { Code::Sub_rm64_imm32 };
-            return Instruction::with2(code, Register::RSP, size).ok();
-        }
         Push | Pop | Ret | Jmp | Je | Jne | Mov | Add | Sub | Cmp | Test | Xor | Lea | Nop => {}
         _ => return None,
     }

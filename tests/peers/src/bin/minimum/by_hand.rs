@@ -148,7 +148,8 @@ pub struct Rastrigin;
 
 impl<const N: usize> Function<N> for Rastrigin {
     fn value(x: &[Interval; N]) -> Interval {
-        x.iter().fold(whole!(10.0) * dimension::<N>(), |sum, x| sum + x.sqr() - whole!(10.0) * (Interval::TAU * *x).cos())
+        x.iter()
+            .fold(whole!(10.0) * dimension::<N>(), |sum, x| sum + x.sqr() - whole!(10.0) * (Interval::TAU * *x).cos())
     }
 
     fn gradient(x: &[Interval; N]) -> (Interval, [Interval; N]) {

@@ -38,8 +38,12 @@ const ROUNDS: usize = 7;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let threads = rayon::current_num_threads();
-    println!("branch and bound to boxes of {RESOLUTION:e}; ms, medians of {ROUNDS} rounds in turn; ratio = inari / Imp; 1 and {threads} threads");
-    println!("| function | n | boxes Imp | boxes inari | compile | Imp, 1 | inari, 1 | ratio | Imp, {threads} | inari, {threads} | ratio |");
+    println!(
+        "branch and bound to boxes of {RESOLUTION:e}; ms, medians of {ROUNDS} rounds in turn; ratio = inari / Imp; 1 and {threads} threads"
+    );
+    println!(
+        "| function | n | boxes Imp | boxes inari | compile | Imp, 1 | inari, 1 | ratio | Imp, {threads} | inari, {threads} | ratio |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     both::<2, _>(0, Himmelblau)?;
     both::<6, _>(0, Himmelblau)?;
@@ -80,12 +84,7 @@ fn both<const N: usize, F: Function<N>>(index: usize, function: F) -> Result<(),
     Ok(())
 }
 
-fn timed<const N: usize>(
-    f: &impl Objective<N>,
-    side: [f64; 2],
-    pool: &ThreadPool,
-    times: &mut Vec<f64>,
-) -> Minimum<N> {
+fn timed<const N: usize>(f: &impl Objective<N>, side: [f64; 2], pool: &ThreadPool, times: &mut Vec<f64>) -> Minimum<N> {
     pool.install(|| {
         let start = Instant::now();
         let found = minimise(f, cube::<N>(side), RESOLUTION);
