@@ -239,7 +239,9 @@ fn what_cannot_be_exported_is_said() {
     assert!(said.contains("`f'` is called `f_prime`") && said.contains("`move` is called `move_` in Rust"), "{said}");
     assert!(said.contains("`inside` is left out"), "{said}");
     let header = fs::read_to_string(folder.path().join("a.h")).unwrap();
-    assert!(header.contains("a_b_f_prime_interval") && header.contains("a_b_move_value") && !header.contains("inside"));
+    assert!(
+        header.contains("a_b_f_prime_interval") && header.contains("a_b_move_value") && !header.contains("a_b_inside")
+    );
 }
 
 #[test]
@@ -275,4 +277,33 @@ fn mistakes_write_nothing() {
     assert_eq!(fs::read_to_string(folder.path().join("ok.imp")).unwrap(), files[0].1);
     // One of two functions whose names collide can be had.
     succeed(folder.path(), &["build", "kernels.imp", "-o", "k.o", "--functions", "f_interval"]);
+}
+
+/// What `make` does in `examples/embedding/c`.
+#[test]
+fn the_c_example_runs() {
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/embedding");
+    let folder = tempfile::tempdir().unwrap();
+    let formulas = sources.join("himmelblau.imp");
+    let outputs = ["-o", "himmelblau.o", "--header", "himmelblau.h", "--kernels", "value,interval"];
+    succeed(folder.path(), &[&["build", formulas.to_str().unwrap()], &outputs[..]].concat());
+    let program = sources.join("c/minimum.c");
+    let flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-I.", "-o", "minimum"];
+    done(folder.path(), "gcc", &[&flags[..], &[program.to_str().unwrap(), "himmelblau.o", "-lm"]].concat());
+    let said = done(folder.path(), folder.path().join("minimum").to_str().unwrap(), &[]);
+    assert!(said.contains("the minimum lies in [0, "), "{said}");
+}
+
+#[test]
+fn the_python_example_runs() {
+    let numpy = Command::new("python3").args(["-c", "import numpy"]).output();
+    if !numpy.is_ok_and(|output| output.status.success()) {
+        println!("skipped: there is no Python with NumPy here");
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let script = root.join("examples/embedding/python/himmelblau.py");
+    let output = Command::new("python3").arg(script).env("IMP", env!("CARGO_BIN_EXE_imp")).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("eight threads compute the same bits"), "{output:?}");
 }

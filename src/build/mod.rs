@@ -13,7 +13,7 @@ pub use crate::codegen::object::Level;
 pub use crate::derive::Precision;
 pub use export::Export;
 pub use export::Selection;
-pub use export::library;
+pub use export::static_library;
 pub use interface::Kernel;
 pub use script::Build;
 pub use script::all_levels;
