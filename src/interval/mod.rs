@@ -33,7 +33,6 @@ mod power;
 mod relations;
 mod reverse;
 pub mod round;
-mod serial;
 mod set_ops;
 mod text;
 mod trigonometric;
