@@ -173,6 +173,9 @@ enum Task {
     Cut(Interval),
     /// The function is monotone on `x` and its zero, if it has one, is in `near`: the signs at both ends decide.
     Ends { x: Interval, near: Interval },
+    /// The signs did not decide, as the zero is too near to an end: all zeros of the part are in `near`, and `x` is that and
+    /// more on both sides.
+    Wider { x: Interval, near: Interval },
     /// To be narrowed.
     Narrow(Root),
     /// To be narrowed from points off its middle, where rounding errors hide the sign of the function.
@@ -185,6 +188,10 @@ enum Lane {
     Part(Interval),
     /// The sign at the lower end; that at the upper one is in the next lane.
     Low {
+        x: Interval,
+        near: Interval,
+    },
+    Wider {
         x: Interval,
         near: Interval,
     },
@@ -241,6 +248,7 @@ impl<'a> Run<'a> {
                 match self.lanes[lane] {
                     Lane::Part(x) => self.part(x, &answer),
                     Lane::Low { x, near } => self.ends(x, near, lane),
+                    Lane::Wider { x, near } => self.wider(x, near, &answer),
                     Lane::Narrow(root) => self.narrow(root, &answer),
                     Lane::Squeeze(root) => self.squeeze(root, lane),
                     Lane::Second => {}
@@ -261,9 +269,9 @@ impl<'a> Run<'a> {
                     self.roots.exhausted = true;
                     self.rest.push(x);
                 }
-                Task::Ends { x, .. } if over => {
+                Task::Ends { near, .. } | Task::Wider { near, .. } if over => {
                     self.roots.exhausted = true;
-                    self.rest.push(x);
+                    self.rest.push(near);
                 }
                 Task::Narrow(root) | Task::Squeeze(root) if over => self.roots.proved.push(root),
                 Task::Cut(x) => {
@@ -279,6 +287,7 @@ impl<'a> Run<'a> {
                         self.ask(lane, Interval::point(end), end);
                     }
                 }
+                Task::Wider { x, near } => self.ask(Lane::Wider { x, near }, x, inside(x)),
                 Task::Narrow(root) => {
                     let x = root.bracket;
                     self.ask(Lane::Narrow(root), x, inside(x));
@@ -345,7 +354,24 @@ impl<'a> Run<'a> {
         match (low.sign, high.sign) {
             (Some(a), Some(b)) if a == b => {}
             (Some(_), Some(_)) => self.queue.push_back(Task::Narrow(Root { bracket: near, alone: Some(x) })),
-            _ => self.open.push(x),
+            _ => {
+                // Twice its width on both sides leaves room for the Newton operator to map into.
+                let margin = 2.0 * (near.hi() - near.lo()) + 4.0 * f64::EPSILON * near.mag();
+                let wider = Interval::new(near.lo() - margin, near.hi() + margin);
+                let x = wider.map_or(near, |wider| wider.intersect(self.range));
+                self.queue.push_back(Task::Wider { x, near });
+            }
+        }
+    }
+
+    /// What the signs at the ends of its part did not decide about `near`.
+    fn wider(&mut self, x: Interval, near: Interval, answer: &Answer) {
+        if answer.refuted {
+            return;
+        }
+        match answer.newton.filter(|newton| x.is_bounded() && x.contains_interval(*newton)) {
+            Some(newton) => self.queue.push_back(Task::Narrow(Root { bracket: newton, alone: Some(x) })),
+            None => self.open.push(near),
         }
     }
 
