@@ -113,8 +113,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 const BARTH: &str = "let phi = (1 + sqrt(5)) / 2\n\
     fn barth(x, y, z) = 4(phi^2 x^2 - y^2)(phi^2 y^2 - z^2)(phi^2 z^2 - x^2) - (1 + 2phi)(x^2 + y^2 + z^2 - 1)^2";
-const ORIGIN: [f64; 3] = [-3.0, 0.25, 0.125];
-const DIRECTION: [f64; 3] = [1.0, 0.0625, 0.03125];
+const ORIGIN: [f64; 3] = [1.5, 1.25, 1.375];
+const DIRECTION: [f64; 3] = [-1.0, -0.75, -0.875];
 
 fn ray() -> Result<(RaySolver, Function), imp::Error> {
     let barth = Program::parse(BARTH)?.function("barth")?;
@@ -124,7 +124,7 @@ fn ray() -> Result<(RaySolver, Function), imp::Error> {
 
 /// The first and the last hit of a ray.
 fn barth(solver: &RaySolver) -> Result<[Interval; 2], String> {
-    let found = solver.roots(&ORIGIN, &DIRECTION, &[], interval([0.0, 6.0])?, &Options::default(), &Control::default());
+    let found = solver.roots(&ORIGIN, &DIRECTION, &[], interval([0.0, 4.0])?, &Options::default(), &Control::default());
     match (found.first(), found.proved.last()) {
         (Some(near), Some(far)) if found.is_complete() => Ok([near.bracket, far.bracket]),
         _ => Err(found.to_string()),
@@ -170,7 +170,7 @@ fn time() -> Result<(), Box<dyn Error>> {
     kepler()?;
 
     let (solver, barth) = ray()?;
-    let range = interval([0.0, 6.0])?;
+    let range = interval([0.0, 4.0])?;
     let compiled = shortest(|| solver.roots(&ORIGIN, &DIRECTION, &[], range, &options, &control));
     let boxes = [Decorated::ENTIRE; 3];
     let reference = shortest(|| {

@@ -18,6 +18,7 @@ use crate::roots::answer::Root;
 use crate::roots::answer::Roots;
 use crate::roots::numbers::is_small;
 use crate::roots::numbers::scale;
+use crate::roots::numbers::simple;
 use crate::roots::numbers::simplest;
 use crate::roots::packets::Answer;
 use crate::roots::packets::Batch;
@@ -30,9 +31,12 @@ use crate::roots::search::CROWDED;
 use crate::roots::search::Search;
 use crate::roots::search::number;
 
-/// Cuts are off the even ones by this part of a piece: zeros of formulas that people write are rarely there, and a zero on
-/// a cut is found from both sides.
+/// Cuts of wide parts are off the even ones by this part of a piece: zeros of formulas that people write are rarely there,
+/// and a zero on a cut is found from both sides.
 const SKEW: f64 = 0.013_671_875;
+/// Below this part of the interval, or of a number's size, cuts are at simple numbers: what is undecided for so long may be
+/// a pole or the end of a domain, which excludes zeros on both sides of a cut that meets it exactly.
+const NARROW: f64 = 1.0 / 64.0;
 /// A bracket that is wider than so many units in the last place is finished by the reference arithmetic.
 const SHARP: u32 = 4;
 
@@ -310,11 +314,14 @@ impl<'a> Run<'a> {
     /// Asks about the pieces of a part; false if no number lies between its ends.
     fn cut(&mut self, x: Interval, pieces: usize) -> bool {
         let cuts = if x.is_bounded() { pieces - 1 } else { 1 };
+        let wide = x.width() > NARROW * scale(x, self.range);
+        let place = |number: f64| between(x, number / pieces as f64);
         let mut last = x.lo();
         let mut found = false;
         for i in 1..=cuts {
             let at = match x.is_bounded() {
-                true => between(x, (i as f64 + SKEW) / pieces as f64),
+                true if wide => place(i as f64 + SKEW),
+                true => simple(place(i as f64 - 0.5), place(i as f64 + 0.5)),
                 false => simplest(x).unwrap_or(x.lo()),
             };
             let Some(piece) = Interval::new(last, at).filter(|_| last < at && at < x.hi()) else { continue };
