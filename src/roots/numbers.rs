@@ -23,13 +23,15 @@ pub fn simplest(x: Interval) -> Option<f64> {
             (x.lo() + quarter, x.hi() - quarter)
         }
     };
-    if lo <= 0.0 && hi >= 0.0 {
-        return Some(0.0);
-    }
+    (lo <= hi).then(|| simple(lo, hi))
+}
+
+/// The number in [lo, hi] that is 0 or divisible by the largest power of two.
+pub fn simple(lo: f64, hi: f64) -> f64 {
     match () {
-        _ if lo > hi => None,
-        _ if lo > 0.0 => Some(shortest(lo, hi)),
-        _ => Some(-shortest(-hi, -lo)),
+        _ if lo > 0.0 => shortest(lo, hi),
+        _ if hi < 0.0 => -shortest(-hi, -lo),
+        _ => 0.0,
     }
 }
 

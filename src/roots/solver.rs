@@ -18,6 +18,7 @@ use crate::roots::answer::Root;
 use crate::roots::answer::Roots;
 use crate::roots::numbers::is_small;
 use crate::roots::numbers::scale;
+use crate::roots::numbers::simple;
 use crate::roots::numbers::simplest;
 use crate::roots::packets::Answer;
 use crate::roots::packets::Batch;
@@ -30,9 +31,12 @@ use crate::roots::search::CROWDED;
 use crate::roots::search::Search;
 use crate::roots::search::number;
 
-/// Cuts are off the even ones by this part of a piece: zeros of formulas that people write are rarely there, and a zero on
-/// a cut is found from both sides.
+/// Cuts of wide parts are off the even ones by this part of a piece: zeros of formulas that people write are rarely there,
+/// and a zero on a cut is found from both sides.
 const SKEW: f64 = 0.013_671_875;
+/// Below this part of the interval, or of a number's size, cuts are at simple numbers: what is undecided for so long may be
+/// a pole or the end of a domain, which excludes zeros on both sides of a cut that meets it exactly.
+const NARROW: f64 = 1.0 / 64.0;
 /// A bracket that is wider than so many units in the last place is finished by the reference arithmetic.
 const SHARP: u32 = 4;
 
@@ -173,6 +177,9 @@ enum Task {
     Cut(Interval),
     /// The function is monotone on `x` and its zero, if it has one, is in `near`: the signs at both ends decide.
     Ends { x: Interval, near: Interval },
+    /// The signs did not decide, as the zero is too near to an end: all zeros of the part are in `near`, and `x` is that and
+    /// more on both sides.
+    Wider { x: Interval, near: Interval },
     /// To be narrowed.
     Narrow(Root),
     /// To be narrowed from points off its middle, where rounding errors hide the sign of the function.
@@ -185,6 +192,10 @@ enum Lane {
     Part(Interval),
     /// The sign at the lower end; that at the upper one is in the next lane.
     Low {
+        x: Interval,
+        near: Interval,
+    },
+    Wider {
         x: Interval,
         near: Interval,
     },
@@ -241,6 +252,7 @@ impl<'a> Run<'a> {
                 match self.lanes[lane] {
                     Lane::Part(x) => self.part(x, &answer),
                     Lane::Low { x, near } => self.ends(x, near, lane),
+                    Lane::Wider { x, near } => self.wider(x, near, &answer),
                     Lane::Narrow(root) => self.narrow(root, &answer),
                     Lane::Squeeze(root) => self.squeeze(root, lane),
                     Lane::Second => {}
@@ -261,9 +273,9 @@ impl<'a> Run<'a> {
                     self.roots.exhausted = true;
                     self.rest.push(x);
                 }
-                Task::Ends { x, .. } if over => {
+                Task::Ends { near, .. } | Task::Wider { near, .. } if over => {
                     self.roots.exhausted = true;
-                    self.rest.push(x);
+                    self.rest.push(near);
                 }
                 Task::Narrow(root) | Task::Squeeze(root) if over => self.roots.proved.push(root),
                 Task::Cut(x) => {
@@ -279,6 +291,7 @@ impl<'a> Run<'a> {
                         self.ask(lane, Interval::point(end), end);
                     }
                 }
+                Task::Wider { x, near } => self.ask(Lane::Wider { x, near }, x, inside(x)),
                 Task::Narrow(root) => {
                     let x = root.bracket;
                     self.ask(Lane::Narrow(root), x, inside(x));
@@ -301,11 +314,14 @@ impl<'a> Run<'a> {
     /// Asks about the pieces of a part; false if no number lies between its ends.
     fn cut(&mut self, x: Interval, pieces: usize) -> bool {
         let cuts = if x.is_bounded() { pieces - 1 } else { 1 };
+        let wide = x.width() > NARROW * scale(x, self.range);
+        let place = |number: f64| between(x, number / pieces as f64);
         let mut last = x.lo();
         let mut found = false;
         for i in 1..=cuts {
             let at = match x.is_bounded() {
-                true => between(x, (i as f64 + SKEW) / pieces as f64),
+                true if wide => place(i as f64 + SKEW),
+                true => simple(place(i as f64 - 0.5), place(i as f64 + 0.5)),
                 false => simplest(x).unwrap_or(x.lo()),
             };
             let Some(piece) = Interval::new(last, at).filter(|_| last < at && at < x.hi()) else { continue };
@@ -345,7 +361,24 @@ impl<'a> Run<'a> {
         match (low.sign, high.sign) {
             (Some(a), Some(b)) if a == b => {}
             (Some(_), Some(_)) => self.queue.push_back(Task::Narrow(Root { bracket: near, alone: Some(x) })),
-            _ => self.open.push(x),
+            _ => {
+                // Twice its width on both sides leaves room for the Newton operator to map into.
+                let margin = 2.0 * (near.hi() - near.lo()) + 4.0 * f64::EPSILON * near.mag();
+                let wider = Interval::new(near.lo() - margin, near.hi() + margin);
+                let x = wider.map_or(near, |wider| wider.intersect(self.range));
+                self.queue.push_back(Task::Wider { x, near });
+            }
+        }
+    }
+
+    /// What the signs at the ends of its part did not decide about `near`.
+    fn wider(&mut self, x: Interval, near: Interval, answer: &Answer) {
+        if answer.refuted {
+            return;
+        }
+        match answer.newton.filter(|newton| x.is_bounded() && x.contains_interval(*newton)) {
+            Some(newton) => self.queue.push_back(Task::Narrow(Root { bracket: newton, alone: Some(x) })),
+            None => self.open.push(near),
         }
     }
 

@@ -12,7 +12,6 @@ use imp::roots::Options;
 use imp::roots::Roots;
 use imp::roots::Search;
 use imp::roots::Solver;
-use imp::session::expression::Bindings;
 use imp::session::expression::Expression;
 use imp::session::expression::Reading;
 use imp::session::expression::Snippet;
@@ -61,9 +60,4 @@ pub fn expression(text: &str) -> Expression {
 
 pub fn interval(lo: f64, hi: f64) -> Interval {
     Interval::new(lo, hi).unwrap()
-}
-
-/// The inputs of an expression that has no parameters of its own.
-pub fn boxes(expression: &Expression) -> Vec<Decorated> {
-    expression.boxes(&Bindings::new())
 }

@@ -27,7 +27,7 @@ fn formula(rng: &mut Rng, depth: usize) -> String {
             _ => "x".to_owned(),
         };
     }
-    let mut part = |rng: &mut Rng| formula(rng, depth - 1);
+    let part = |rng: &mut Rng| formula(rng, depth - 1);
     let a = part(rng);
     let b = part(rng);
     match rng.usize(0..16) {
