@@ -10,7 +10,8 @@ use num_traits::Zero;
 
 use crate::graph::Op;
 
-/// The most bits that numerator and denominator of a folded number have together. Beyond, the operation stays in the graph
+/// The most bits that numerator and denominator of a folded number have together, and those of both operands of a sum,
+/// a product or a quotient. Beyond, the operation stays in the graph
 /// as the user wrote it: nothing is lost but the folding, and no input makes the compiler run out of memory.
 pub const MAX_BITS: u64 = 4096;
 
@@ -26,6 +27,13 @@ pub fn exact(op: Op, operands: &[&BigRational]) -> Option<BigRational> {
     let one = BigRational::one;
     let when = |condition: bool, value: BigRational| condition.then_some(value);
     let truth = |condition: bool| Some(if condition { one() } else { zero() });
+    // Sums have a common denominator, which costs the square of the lengths, and would be too long in the end.
+    let rational = matches!(op, Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Mod);
+    if let (true, Some(x), Some(y)) = (rational, x, y)
+        && bits(x) + bits(y) > MAX_BITS
+    {
+        return None;
+    }
     let value = match op {
         Op::Const(_) | Op::Var(_) | Op::Pi | Op::Entire | Op::Kink | Op::SelectJump => None,
         Op::PowInt(n) => power(x?, n.into()),

@@ -154,8 +154,8 @@ fn lower<'a>(lowerer: &mut Lowerer, index: usize, statement: &'a Statement) -> O
             let locals = params.iter().map(|param| {
                 (param.name.text.clone(), Meaning::Scalar(lowerer.graph.var(&argument(&param.name.text))))
             });
-            let locals = locals.collect();
-            let meaning = lowerer.in_frame(0, locals, (name.text.clone(), name.span), body);
+            let mut locals = locals.collect();
+            let meaning = lowerer.in_frame(0, &mut locals, (name.text.clone(), name.span), body);
             Some(Lowered { name: name.text.clone(), arguments: params, callable: true, meaning, span: body.span })
         }
         StatementKind::Let { name, value } => Some(whole(lowerer, &name.text, value)),

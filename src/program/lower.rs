@@ -187,17 +187,17 @@ impl<'p> Lowerer<'p> {
         }
     }
 
-    /// Lowers `body` with the parameters of a called function.
+    /// Lowers `body` with the parameters of a called function, which are lent.
     pub fn in_frame(
         &mut self,
         file: usize,
-        locals: Vec<(String, Meaning)>,
+        locals: &mut Vec<(String, Meaning)>,
         call: (String, Span),
         body: &Expr,
     ) -> Meaning {
-        self.frames.push(Frame { file, locals, call: Some(call) });
+        self.frames.push(Frame { file, locals: std::mem::take(locals), call: Some(call) });
         let meaning = self.lower(body);
-        self.frames.pop();
+        *locals = self.frames.pop().map(|frame| frame.locals).unwrap_or_default();
         meaning
     }
 
