@@ -147,12 +147,12 @@ pub(super) fn component_index(length: usize, span: Span) -> Diagnostic {
         .help("the number must be written out or a constant")
 }
 
-pub(super) fn too_much_expansion(span: Span, steps: usize) -> Diagnostic {
+pub(super) fn too_much_expansion(span: Span) -> Diagnostic {
     Diagnostic::error(
         code::TOO_MUCH_EXPANSION,
         "this formula grows too large when its functions and lists are written out",
     )
-    .at(span, format!("given up here after {steps} steps"))
+    .at(span, "given up here")
     .help("functions that call functions several times multiply; name a shared part with `let`")
 }
 

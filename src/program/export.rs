@@ -109,7 +109,7 @@ pub fn resolve_functions(
                 let needs = "a function for other programs has numbers";
                 found.refused.push(refuse(vec![match lowered.meaning {
                     // What an earlier function has reported.
-                    Meaning::Invalid => errors::too_much_expansion(lowered.span, context.budget.limits().steps),
+                    Meaning::Invalid => errors::too_much_expansion(lowered.span),
                     _ => errors::wrong_kind(needs, lowered.meaning.kind(), lowered.span),
                 }]));
                 continue;
