@@ -62,7 +62,7 @@ impl Limits {
             files: 0,
             steps: 100_000,
             nodes: 20_000,
-            operations: 60_000,
+            operations: 100_000,
             time: Duration::from_millis(500),
         }
     }

@@ -10,8 +10,7 @@ use num_traits::Zero;
 
 use crate::graph::Op;
 
-/// The most bits that numerator and denominator of a folded number have together, and those of both operands of a sum,
-/// a product or a quotient. Beyond, the operation stays in the graph
+/// The most bits that numerator and denominator of a folded number have together. Beyond, the operation stays in the graph
 /// as the user wrote it: nothing is lost but the folding, and no input makes the compiler run out of memory.
 pub const MAX_BITS: u64 = 4096;
 
@@ -27,10 +26,8 @@ pub fn exact(op: Op, operands: &[&BigRational]) -> Option<BigRational> {
     let one = BigRational::one;
     let when = |condition: bool, value: BigRational| condition.then_some(value);
     let truth = |condition: bool| Some(if condition { one() } else { zero() });
-    // Sums have a common denominator, which costs the square of the lengths, and would be too long in the end.
-    let rational = matches!(op, Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Mod);
-    if let (true, Some(x), Some(y)) = (rational, x, y)
-        && bits(x) + bits(y) > MAX_BITS
+    if let (Some(x), Some(y)) = (x, y)
+        && worst_bits(op, x, y) > MAX_BITS
     {
         return None;
     }
@@ -75,6 +72,17 @@ pub fn exact(op: Op, operands: &[&BigRational]) -> Option<BigRational> {
         Op::Select => None,
     }?;
     (bits(&value) <= MAX_BITS).then_some(value)
+}
+
+/// How long the result of an arithmetic operation is where nothing cancels: looked at first, because a common denominator
+/// takes the square of its length to find, and a sum that is too long in the end would be tried again by every pass.
+fn worst_bits(op: Op, x: &BigRational, y: &BigRational) -> u64 {
+    let [xn, xd, yn, yd] = [x.numer(), x.denom(), y.numer(), y.denom()].map(BigInt::bits);
+    match op {
+        Op::Add | Op::Sub | Op::Mod => xd + yd + (xn + yd).max(yn + xd),
+        Op::Mul | Op::Div => xn + xd + yn + yd,
+        _ => 0,
+    }
 }
 
 fn bits(x: &BigRational) -> u64 {

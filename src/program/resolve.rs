@@ -306,11 +306,12 @@ fn equation_among(lowerer: &mut Lowerer, truth: Value) -> Option<(Value, Option<
 pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]) -> Vec<Parameter> {
     let program = lowerer.program;
     let mut found: Vec<(Parameter, Span)> = Vec::new();
+    let mut places: HashMap<&str, Span> = HashMap::new();
     let mut items = program.order.clone();
     items.sort_unstable();
     for id in items {
         let StatementKind::Param { name, value, range } = &program.statement(id).kind else { continue };
-        if let Some((_, first)) = found.iter().find(|(other, _)| other.name == name.text) {
+        if let Some(first) = places.get(name.text.as_str()) {
             lowerer.report(errors::same_parameter(&name.text, name.span, *first));
             continue;
         }
@@ -334,6 +335,7 @@ pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]
                 value.span,
             ));
         }
+        places.insert(&name.text, name.span);
         found.push((Parameter { name: name.text.clone(), value: number, range }, name.span));
     }
     let time = Parameter { name: TIME.to_owned(), value: Interval::ZERO, range: None };
