@@ -89,6 +89,7 @@ fn measure(mut command: Command, folder: &Path) -> Outcome {
     let title = line.unwrap_or_default().to_owned();
     let exit = status >> 8;
     let verdict = match title.strip_prefix("error[").and_then(|rest| rest.split_once(']')) {
+        None if said.contains("refused by the library") => "no code".to_owned(),
         _ if status & 0x7f != 0 => format!("signal {}", status & 0x7f),
         Some((code, _)) if exit == 1 || said.contains("refused by the library") => code.to_owned(),
         None if exit == 0 => "accepted".to_owned(),
@@ -112,6 +113,7 @@ fn compile_one_file() {
     let budget = Budget::new(&Limits::untrusted());
     let artefact = session::compile_within(Source::File(file), &[], &budget);
     match result {
+        Err(Error::Other(found)) => println!("\nerror[{}]: {}\nrefused by the library", found.code, found.title),
         Err(error) => println!("\n{error}\nrefused by the library"),
         Ok(()) if artefact.scene.is_none() => {
             let said = diagnostic::render(&artefact.sources, &artefact.diagnostics, false);
@@ -143,22 +145,27 @@ fn every_source_is_refused_or_harmless() {
     println!("{:34} {:>8} {:>6} {:>4}   {:>8} {:>6} {:>4}", "", "library", "ms", "MB", "check", "ms", "MB");
     for case in cases::all().iter().filter(|case| case.name.contains(&only)) {
         let folder = tempfile::tempdir().unwrap();
-        case.write(folder.path(), 1);
-        let main = folder.path().join("main.imp");
-        let check = measure(command(env!("CARGO_BIN_EXE_imp"), &["check", "main.imp"]), folder.path());
+        let file = folder.path().join("main.imp");
         let library = || {
             let mut library = command(env::current_exe().unwrap(), &["--exact", "compile_one_file", "--nocapture"]);
-            library.env(FILE, &main);
-            measure(library, folder.path())
+            library.env(FILE, &file);
+            library
         };
-        let whole = library();
-        // A text that is too large for strangers says nothing about what a smaller one of its kind does.
-        let divisor = fs::metadata(&main).unwrap().len() as usize / Limits::untrusted().source_bytes + 1;
-        case.write(folder.path(), divisor);
-        if divisor > 1 && whole.verdict != "E0402" {
-            let _ = writeln!(faults, "{}: the whole is {}", case.name, whole.verdict);
-        }
-        let outcomes = [if divisor == 1 { whole } else { library() }, check];
+        let check = || command(env!("CARGO_BIN_EXE_imp"), &["check", "main.imp"]);
+        // Of a text that is too large, a smaller one of its kind says more.
+        let outcome = |limits: Limits, command: &dyn Fn() -> Command| {
+            case.write(folder.path(), 1);
+            let whole = measure(command(), folder.path());
+            let divisor = fs::metadata(&file).unwrap().len() as usize * 11 / 10 / limits.source_bytes + 1;
+            if divisor == 1 || whole.verdict != "E0402" {
+                return whole;
+            }
+            case.write(folder.path(), divisor);
+            let part = measure(command(), folder.path());
+            let larger = whole.megabytes.max(part.megabytes);
+            Outcome { seconds: whole.seconds.max(part.seconds), megabytes: larger, ..part }
+        };
+        let outcomes = [outcome(Limits::untrusted(), &library), outcome(Limits::default(), &check)];
         let mut row = format!("{:34}", case.name);
         for (outcome, how) in outcomes.iter().zip(["the library", "`imp check`"]) {
             let Outcome { verdict, title, seconds, megabytes } = outcome;

@@ -95,8 +95,12 @@ fn compile(seed: u64) -> Job {
     }
 }
 
-/// Compares all kernels of a program over boxes that only this thread has. `slack` is 0 where rounding upward works.
-fn check(job: &Job, thread: usize, slack: f64) {
+/// Compares all kernels of a program over boxes that only this thread has. A kernel encloses what the reference does, but for
+/// elementary functions, of which either may be an ulp or two tighter.
+fn check(job: &Job, thread: usize) {
+    let text = formula(job.seed);
+    let algebraic = ["sin", "exp", "atan"].iter().all(|function| !text.contains(function));
+    let slack = if algebraic && !emulated() { 0.0 } else { 1e-9 };
     let mut rng = fastrand::Rng::with_seed(job.seed ^ (thread as u64) << 32);
     let mut inputs = vec![Packet::<f64>::default(); 2 * VARIABLES];
     let mut boxes = Vec::new();
@@ -125,7 +129,7 @@ fn check(job: &Job, thread: usize, slack: f64) {
                 let holds = found.lo() <= lo + margin && found.hi() >= hi - margin;
                 // The empty set, and what has no bound, are not worth the arithmetic.
                 let exempt = lo > hi || lo.is_nan() || margin.is_nan() || slack > 0.0 && !margin.is_finite();
-                assert!(holds || exempt, "{}\n{name}: {found:?} misses [{lo}, {hi}]", formula(job.seed));
+                assert!(holds || exempt, "{text}\n{name}: {found:?} misses [{lo}, {hi}]");
             }
         }
         let corner: Vec<f64> = boxes[row * VARIABLES..(row + 1) * VARIABLES].iter().map(|side| side.lo()).collect();
@@ -133,7 +137,7 @@ fn check(job: &Job, thread: usize, slack: f64) {
         let found = double[row * outputs];
         let margin = 1e-6 * found.lo().abs().max(found.hi().abs()).max(1.0);
         let holds = value >= found.lo() - margin && value <= found.hi() + margin;
-        assert!(holds || value.is_nan(), "{}\n{value} at {corner:?} is not in {found:?}", formula(job.seed));
+        assert!(holds || value.is_nan(), "{text}\n{value} at {corner:?} is not in {found:?}");
     }
 }
 
@@ -171,7 +175,6 @@ fn emulated() -> bool {
 fn programs_come_and_go() {
     let programs: usize = env::var("IMP_SOAK").map_or(160, |text| text.parse().unwrap());
     let rounds = programs.div_ceil(THREADS);
-    let slack = if emulated() { 1e-9 } else { 0.0 };
     let (_, code_before) = mappings();
     let (barrier, slots) = (Barrier::new(THREADS), [const { Mutex::new(None::<Arc<Job>>) }; THREADS]);
     let (done, samples) = (AtomicBool::new(false), AtomicUsize::new(0));
@@ -183,7 +186,7 @@ fn programs_come_and_go() {
             barrier.wait();
             for offset in 0..THREADS {
                 let job = slots[(thread + offset) % THREADS].lock().unwrap().clone().unwrap();
-                check(&job, thread, slack);
+                check(&job, thread);
             }
             barrier.wait();
             // Compiled there, dropped here.

@@ -75,7 +75,7 @@ pub fn lower(
     };
     for (value, node) in spec.graph.iter().filter(|(v, _)| needed[v.index()]) {
         budget.tick()?;
-        budget.operations(lowering.b.len())?;
+        budget.operations(lowering.b.count())?;
         let form = lowering.form(value, node);
         lowering.forms[value.index()] = Some(form);
     }

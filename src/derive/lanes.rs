@@ -243,7 +243,7 @@ impl Builder {
     }
 
     /// Operations so far.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.ops.len()
     }
 

@@ -14,6 +14,7 @@ mod magnitude;
 mod point;
 mod ray;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::graph::Graph;
@@ -128,10 +129,9 @@ impl Spec {
     /// # Errors
     /// Which limit was exceeded.
     pub fn lower_within(&self, precision: Precision, budget: &Budget) -> Result<LaneProgram, Exceeded> {
-        let promised = |name: &String| {
-            let promise = self.promises.iter().find(|(n, _)| n == name);
-            promise.map_or(Interval::ENTIRE, |&(_, range)| range)
-        };
+        let promises: HashMap<&str, Interval> =
+            self.promises.iter().map(|(name, range)| (name.as_str(), *range)).collect();
+        let promised = |name: &String| promises.get(name.as_str()).copied().unwrap_or(Interval::ENTIRE);
         let inputs: Vec<Interval> = self.graph.variables().iter().map(promised).collect();
         budget.time()?;
         let bounds = bounds(&self.graph, &inputs, &self.domain);

@@ -29,7 +29,7 @@ pub fn lower(
     let mut lanes: Vec<Option<Lane>> = vec![None; spec.graph.len()];
     for (value, node) in spec.graph.iter().filter(|(v, _)| needed[v.index()]) {
         budget.tick()?;
-        budget.operations(b.len())?;
+        budget.operations(b.count())?;
         let operands: Vec<Lane> =
             node.operands().iter().map(|v| lanes[v.index()].expect("operands are lowered first")).collect();
         let constant = node.op != Op::Entire && operands.iter().all(|&lane| b.as_number(lane).is_some());

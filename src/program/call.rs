@@ -158,7 +158,7 @@ impl Lowerer<'_> {
             let meaning = match (slot, &param.default) {
                 (Some((meaning, _)), _) => meaning,
                 // A default may use the parameters before it.
-                (None, Some(default)) => self.in_frame(item.file, locals.clone(), call(), default),
+                (None, Some(default)) => self.in_frame(item.file, &mut locals, call(), default),
                 (None, None) => Meaning::Invalid,
             };
             if matches!(meaning, Meaning::Invalid) {
@@ -166,7 +166,7 @@ impl Lowerer<'_> {
             }
             locals.push((param.name.text.clone(), meaning));
         }
-        self.in_frame(item.file, locals, call(), body)
+        self.in_frame(item.file, &mut locals, call(), body)
     }
 
     /// Arguments in the places of their parameters, of which those marked `true` are required. Further arguments of a

@@ -1,5 +1,7 @@
 //! The domain: what was written, or a choice that shows the whole picture.
 
+use std::collections::HashMap;
+
 use crate::graph::Graph;
 use crate::interval::Interval;
 use crate::limits::Budget;
@@ -126,8 +128,8 @@ impl<'g> Search<'g> {
         }
         let enclosures = Enclosures::new(graph, &roots);
         let names = enclosures.inputs();
-        let range =
-            |name: &String| parameters.iter().find(|(p, _)| p == name).map_or(Interval::ENTIRE, |(_, range)| *range);
+        let parameters: HashMap<&str, Interval> = parameters.iter().copied().collect();
+        let range = |name: &String| parameters.get(name.as_str()).copied().unwrap_or(Interval::ENTIRE);
         let inputs = names.iter().map(range).collect();
         let coordinate = |name: &&str| names.iter().position(|input| input == name);
         let coordinates = COORDINATES[..dimension].iter().map(coordinate).collect();

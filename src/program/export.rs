@@ -115,7 +115,7 @@ pub fn resolve_functions(
                 let needs = "a function for other programs has numbers";
                 found.refused.push(refuse(vec![match lowered.meaning {
                     // What an earlier function has reported.
-                    Meaning::Invalid => errors::too_much_expansion(lowered.span, context.budget.limits().steps),
+                    Meaning::Invalid => errors::too_much_expansion(lowered.span),
                     _ => errors::wrong_kind(needs, lowered.meaning.kind(), lowered.span),
                 }]));
                 continue;
@@ -160,8 +160,8 @@ fn lower<'a>(lowerer: &mut Lowerer, index: usize, statement: &'a Statement) -> O
             let locals = params.iter().map(|param| {
                 (param.name.text.clone(), Meaning::Scalar(lowerer.graph.var(&input(name, &param.name.text))))
             });
-            let locals = locals.collect();
-            let meaning = lowerer.in_frame(0, locals, (name.text.clone(), name.span), body);
+            let mut locals = locals.collect();
+            let meaning = lowerer.in_frame(0, &mut locals, (name.text.clone(), name.span), body);
             Some(Lowered { name: name.text.clone(), arguments: params, callable: true, meaning, span: body.span })
         }
         StatementKind::Let { name, value } => Some(whole(lowerer, &name.text, value)),

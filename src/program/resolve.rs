@@ -24,6 +24,7 @@ use crate::syntax::ast::StatementKind;
 
 use super::builtins::TIME;
 use super::domain::default_domain;
+use super::enclose::Dependence;
 use super::enclose::inputs_of;
 use super::errors;
 use super::import::Importer;
@@ -31,7 +32,6 @@ use super::lower::Lowerer;
 use super::lower::as_truth;
 use super::names::Program;
 use super::names::defined_name;
-use super::scene::COORDINATES;
 use super::scene::Parameter;
 use super::scene::Scene;
 use super::scene::Shape;
@@ -210,12 +210,13 @@ pub fn resolve_constant(
 struct Lowered {
     shape: Shape,
     keyword: Option<ShapeKeyword>,
-    /// Names of the inputs that it depends on.
-    inputs: Vec<String>,
+    /// Whether it depends on each of the coordinates.
+    coordinates: [bool; 3],
 }
 
 fn lower_shapes(lowerer: &mut Lowerer) -> Vec<Lowered> {
     let program = lowerer.program;
+    let mut dependence = Dependence::default();
     let mut shapes = Vec::new();
     for (index, statement) in program.files[0].module.statements.iter().enumerate() {
         let StatementKind::Shape { keyword, name, relation, condition } = &statement.kind else { continue };
@@ -239,14 +240,14 @@ fn lower_shapes(lowerer: &mut Lowerer) -> Vec<Lowered> {
             None => besides,
         };
         let roots: Vec<Value> = [field].into_iter().chain(condition).collect();
-        let inputs = inputs_of(&lowerer.graph, &roots);
-        if !inputs.iter().any(|input| COORDINATES.contains(&input.as_str())) {
+        let coordinates = dependence.of(&lowerer.graph, &roots);
+        if coordinates == [false; 3] {
             lowerer.report(errors::no_coordinate(relation.span));
             continue;
         }
         let name = name.as_ref().map(|name| name.text.clone()).unwrap_or_default();
         let shape = Shape { name, kind, field, condition, span: statement.span };
-        shapes.push(Lowered { shape, keyword: *keyword, inputs });
+        shapes.push(Lowered { shape, keyword: *keyword, coordinates });
     }
     shapes
 }
@@ -305,11 +306,12 @@ fn equation_among(lowerer: &mut Lowerer, truth: Value) -> Option<(Value, Option<
 pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]) -> Vec<Parameter> {
     let program = lowerer.program;
     let mut found: Vec<(Parameter, Span)> = Vec::new();
+    let mut places: HashMap<&str, Span> = HashMap::new();
     let mut items = program.order.clone();
     items.sort_unstable();
     for id in items {
         let StatementKind::Param { name, value, range } = &program.statement(id).kind else { continue };
-        if let Some((_, first)) = found.iter().find(|(other, _)| other.name == name.text) {
+        if let Some(first) = places.get(name.text.as_str()) {
             lowerer.report(errors::same_parameter(&name.text, name.span, *first));
             continue;
         }
@@ -333,6 +335,7 @@ pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]
                 value.span,
             ));
         }
+        places.insert(&name.text, name.span);
         found.push((Parameter { name: name.text.clone(), value: number, range }, name.span));
     }
     let time = Parameter { name: TIME.to_owned(), value: Interval::ZERO, range: None };
@@ -377,7 +380,7 @@ fn domain_statement(lowerer: &mut Lowerer) -> Option<(Vec<Interval>, Span)> {
 
 /// Whether the scene lies in space or in the plane, which every shape must agree to, and the names of shapes without one.
 fn check_dimension(lowerer: &mut Lowerer, shapes: &mut [Lowered], written: Option<usize>) -> usize {
-    let uses_z = |lowered: &Lowered| lowered.inputs.iter().any(|input| input == COORDINATES[2]);
+    let uses_z = |lowered: &Lowered| lowered.coordinates[2];
     let is_surface = |lowered: &Lowered| lowered.keyword == Some(ShapeKeyword::Surface);
     let space = shapes.iter().any(|lowered| is_surface(lowered) || uses_z(lowered));
     let dimension = written.unwrap_or(if space { 3 } else { 2 });
@@ -405,11 +408,16 @@ fn check_dimension(lowerer: &mut Lowerer, shapes: &mut [Lowered], written: Optio
             lowerer.report(errors::dimension("a surface in a scene of two dimensions", span, "this surface", help));
         }
     }
+    let mut number = 0;
     let mut taken: HashSet<String> = shapes.iter().map(|lowered| lowered.shape.name.clone()).collect();
     for (index, lowered) in shapes.iter_mut().enumerate().filter(|(_, lowered)| lowered.shape.name.is_empty()) {
         let word = if dimension == 3 { "surface" } else { "curve" };
-        let mut names = (index + 1..).map(|number| format!("{word}{number}"));
-        lowered.shape.name = names.find(|name| taken.insert(name.clone())).unwrap_or_default();
+        // All numbers from an earlier shape's place up to its number are taken.
+        number = number.max(index) + 1;
+        while !taken.insert(format!("{word}{number}")) {
+            number += 1;
+        }
+        lowered.shape.name = format!("{word}{number}");
     }
     dimension
 }
@@ -438,5 +446,5 @@ fn compact(graph: &Graph, mut shapes: Vec<Shape>) -> (Graph, Vec<Shape>) {
 pub(super) fn sort(diagnostics: &mut Vec<Diagnostic>) {
     let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| (label.span.file, label.span.start));
     diagnostics.sort_by_key(|diagnostic| (place(diagnostic).is_none(), place(diagnostic)));
-    diagnostic::shorten(diagnostics);
+    diagnostic::shorten(diagnostics, 0);
 }

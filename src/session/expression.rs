@@ -490,11 +490,11 @@ mod tests {
     fn a_workspace_holds_to_its_limits() {
         let mut workspace = Workspace::within(Limits { source_bytes: 20, nodes: 9, files: 0, ..Limits::untrusted() });
         let none = Bindings::new();
-        let code = |result: Result<_, Messages>| result.err().map(|messages| messages.diagnostics[0].code);
+        let first = |result: Result<_, Messages>| result.err().map(|messages| messages.diagnostics[0].code);
         let long = format!("let a = 1{}", "+1".repeat(20));
-        assert_eq!(code(workspace.define(&Snippet::whole("line 1", &long), &none)), Some(code::LARGER_THAN_ALLOWED));
+        assert_eq!(first(workspace.define(&Snippet::whole("line 1", &long), &none)), Some(code::LARGER_THAN_ALLOWED));
         let import = Snippet::whole("line 1", "import \"a.imp\"");
-        assert_eq!(code(workspace.define(&import, &none)), Some(code::LARGER_THAN_ALLOWED));
+        assert_eq!(first(workspace.define(&import, &none)), Some(code::LARGER_THAN_ALLOWED));
         workspace.define(&Snippet::whole("line 1", "fn f(u) = u^2 + u"), &none).unwrap();
         let expression =
             |text: &str| workspace.expression(&Snippet::whole("line 2", text), &["x"], Reading::Value).map(|_| ());

@@ -23,7 +23,6 @@ mod token;
 
 use lalrpop_util::ParseError;
 
-use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
 use crate::diagnostic::code;
@@ -53,21 +52,21 @@ pub fn parse(file: FileId, text: &str) -> (Module, Vec<Diagnostic>) {
     let mut module = Module::default();
     let parser = grammar::StatementParser::new();
     for group in groups(&mut reporter) {
-        let before = reporter.found.len();
+        let before = reporter.count();
         let kind = filter::filter(&mut reporter, &group.tokens)
             .and_then(|tokens| run(&mut reporter, &tokens, |r, input| parser.parse(r, input)));
         if let Some(kind) = &kind {
             kind.expressions(|expr| filter::nodes(&mut reporter, expr));
         }
         if let Some(kind) = kind
-            && reporter.found.len() == before
+            && reporter.count() == before
             && !group.faulty
         {
             let span = reporter.span(group.tokens[0].start, group.tokens[group.tokens.len() - 1].end);
             module.statements.push(Statement { span, doc: group.doc, kind });
         }
     }
-    (module, finish(reporter.found))
+    (module, reporter.finish())
 }
 
 /// Reads one expression, for `imp eval`, the REPL and values on the command line. Line ends count as blanks.
@@ -85,7 +84,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
         reporter.report(diagnostic.at(reporter.span(0, 0), "nothing is written"));
     }
     if !reporter.found.is_empty() {
-        return Err(finish(reporter.found));
+        return Err(reporter.finish());
     }
     let expr = filter::filter(&mut reporter, &lexemes).and_then(|tokens| {
         let parser = grammar::ExpressionParser::new();
@@ -96,7 +95,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
     }
     match expr {
         Some(expr) if reporter.found.is_empty() => Ok(expr),
-        _ => Err(finish(reporter.found)),
+        _ => Err(reporter.finish()),
     }
 }
 
@@ -116,7 +115,7 @@ fn lex(reporter: &mut Reporter<'_>) -> Lexed {
 fn groups(reporter: &mut Reporter<'_>) -> Vec<Group> {
     let Lexed { lexemes, guesses } = lex(reporter);
     let mut groups = layout::statements(reporter, &lexemes);
-    let mut faults: Vec<u32> = reporter.found.iter().filter_map(|d| Some(d.labels.first()?.span.start)).collect();
+    let mut faults = reporter.places.clone();
     faults.sort_unstable();
     let within = |sorted: &[u32], group: &Group| {
         let (start, end) = (group.tokens[0].start, group.tokens[group.tokens.len() - 1].end);
@@ -161,11 +160,4 @@ fn run<'t, T>(
     let diagnostic = explain::explain(reporter, &stop);
     reporter.report(diagnostic);
     None
-}
-
-/// Messages in the order of the text, and not more of them than anyone reads.
-fn finish(mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    found.sort_by_key(|d| d.labels.first().map(|l| l.span.start));
-    diagnostic::shorten(&mut found);
-    found
 }

@@ -96,7 +96,8 @@ fn nesting() -> Vec<Case> {
         text("bars", |o| o.times(MANY, "|").put("x").times(MANY, "|").put(" = 1")),
         text("bars with blanks", |o| o.times(MANY, "| ").put("x").times(MANY, " |").put(" = 1")),
         text("bars in sums", |o| o.times(MANY, "|x + ").put("y").times(MANY, "|").put(" = 1")),
-        text("brackets side by side", |o| o.times(MANY, "(x)").put(" = 1")),
+        text("brackets side by side", |o| o.times(MANY, "(x)").put(" = 1"))
+            .harmless("one product, linear in its length"),
         text("calls", |o| o.times(MANY, "sin(").put("x").times(MANY, ")").put(" = y")),
         text("minus signs", |o| o.times(MANY, "-").put("x = 1")),
         text("minus signs with blanks", |o| o.put("x = ").times(MANY, "- ").put("y")),
@@ -112,7 +113,7 @@ fn nesting() -> Vec<Case> {
         text("if", |o| o.put("y = ").times(MANY, "if x < 1 then ").put("1").times(MANY, " else 2")),
         text("else if", |o| o.put("y = ").times(MANY, "if x < 1 then 1 else ").put("2")),
         text("and", |o| o.put("x = 1 where x < 1").times(MANY, " and x < 1")).harmless("one condition, repeated"),
-        text("relations", |o| o.put("x").times(MANY, " < x")),
+        text("relations", |o| o.put("x").times(MANY, " < x")).harmless("one condition, repeated"),
     ]
 }
 
@@ -168,27 +169,28 @@ fn imports() -> Vec<Case> {
 fn sizes() -> Vec<Case> {
     vec![
         short("nothing", ""),
-        text("10 MB in one sum", |o| o.put("x = 1").times(HUGE / 2, "+1")),
+        text("10 MB in one sum", |o| o.put("x = 1").times(HUGE / 2, "+1")).harmless("numbers are folded"),
         text("10 MB in one product", |o| o.put("x = 1").times(HUGE / 2, "*x")),
         text("10 MB in one name", |o| o.times(HUGE, "a").put(" = 1")),
         text("10 MB in one number", |o| o.put("x = ").times(HUGE, "9")),
-        text("10 MB in one comment", |o| o.put("#").times(HUGE, "a").put("\nx = y")),
-        text("10 MB of line ends", |o| o.times(HUGE, "\n").put("x = y")),
-        text("10 MB of blanks", |o| o.times(HUGE, " ").put("x = y")),
+        text("10 MB in one comment", |o| o.put("#").times(HUGE, "a").put("\nx = y"))
+            .harmless("a part of it stands for nothing"),
+        text("10 MB of line ends", |o| o.times(HUGE, "\n").put("x = y")).harmless("a part of them stands for nothing"),
+        text("10 MB of blanks", |o| o.times(HUGE, " ").put("x = y")).harmless("a part of them stands for nothing"),
         text("10 MB of brackets", |o| o.times(HUGE, "(")),
         text("10 MB of NUL", |o| o.times(HUGE, "\0")),
         text("10 MB of quotes", |o| o.times(HUGE / 2, "\"\n")),
-        text("1 MB in one sum", |o| o.put("x = 1").times(500_000, "+x")),
-        text("1 MB in one product", |o| o.put("x = 1").times(500_000, "*x")),
-        text("1 MB side by side", |o| o.put("y = x").times(500_000, " x")),
-        text("1 MB in one name", |o| o.times(1_000_000, "a").put(" = 1")),
-        text("1 MB in one number", |o| o.put("x = ").times(1_000_000, "9")),
-        text("1 MB of line ends", |o| o.times(1_000_000, "\n").put("x = y")).harmless("they stand for nothing"),
-        text("1 MB of errors", |o| o.times(500_000, "1 2\n")),
-        text("60 KB in one sum", |o| o.put("x = 1").each(9_000, |i| format!("+{i}x"))),
-        text("60 KB in one product", |o| o.put("y = x").each(6_000, |i| format!("(x-{i})"))),
-        text("60 KB of functions", |o| o.put("y = 0").each(4_000, |i| format!("+sin({i}x)"))),
-        text("60 KB of slow functions", |o| o.put("y = 0").each(3_500, |i| format!("+atan2(x,{i}y)"))),
+        text("much in one sum", |o| o.put("x = 1").times(500_000, "+x")),
+        text("much in one product", |o| o.put("x = 1").times(500_000, "*x")),
+        text("much side by side", |o| o.put("y = x").times(500_000, " x")),
+        text("much of errors", |o| o.times(500_000, "1 2\n")),
+        text("60 KB in one sum", |o| o.put("x = 1").each(9_000, |i| format!("+{i}x"))).harmless("linear in its length"),
+        text("60 KB in one product", |o| o.put("y = x").each(6_000, |i| format!("(x-{i})")))
+            .harmless("linear in its length"),
+        text("60 KB of functions", |o| o.put("y = 0").each(4_000, |i| format!("+sin({i}x)")))
+            .harmless("linear in its length"),
+        text("60 KB of slow functions", |o| o.put("y = 0").each(3_500, |i| format!("+atan2(x,{i}y)")))
+            .harmless("linear in its length"),
         text("60 KB of different numbers", |o| o.put("y = x").each(30, |i| format!("+0.{}{i}x", "7".repeat(1_900))))
             .harmless("60 operations"),
     ]
@@ -216,11 +218,14 @@ fn numbers() -> Vec<Case> {
             .harmless("numbers past 4096 bits are not folded"),
         text("sums of long fractions", |o| {
             o.put("let a = 1/3^1200\nlet b = 1/7^700\ny = 0").each(4_000, |i| format!("+(a+{i}b)x"))
-        }),
+        })
+        .harmless("numbers past 4096 bits are not folded"),
         text("pi to a power of 1000 digits", |o| o.put("y = x + pi^").times(1000, "7")),
         text("root of 2000 digits", |o| o.put("y = x + sqrt(").times(1000, "17").put(")")).harmless("one number"),
-        text("x to a fraction of long numbers", |o| o.put("y = x^(").times(500, "7").put("/").times(500, "3").put(")")),
-        text("long numbers", |o| o.put("y = x").each(900, |i| format!("+{}{i}x", "7".repeat(2000 - 8)))),
+        text("x to a fraction of long numbers", |o| o.put("y = x^(").times(500, "7").put("/").times(500, "3").put(")"))
+            .harmless("one operation"),
+        text("long numbers", |o| o.put("y = x").each(900, |i| format!("+{}{i}x", "7".repeat(2000 - 8))))
+            .harmless("linear in its length"),
     ]
 }
 
@@ -249,7 +254,8 @@ fn names() -> Vec<Case> {
             .harmless("parameters that nothing uses"),
         text("100 000 params in use", |o| {
             o.each(MANY, |i| format!("param a{i} = {i}\n")).put("x = y").each(MANY, |i| format!("+a{i}"))
-        }),
+        })
+        .harmless("linear in its length"),
         text("5000 params in use", |o| {
             o.each(2_500, |i| format!("param a{i} = {i}\n")).put("x = y").each(2_500, |i| format!("+a{i}"))
         })
@@ -261,7 +267,8 @@ fn names() -> Vec<Case> {
                 .each(20_000, |i| format!("+a{i}"))
                 .put("\ny = f(x)")
         }),
-        text("many arguments", |o| o.put("y = max(x").each(MANY, |i| format!(",{i}x")).put(")")),
+        text("many arguments", |o| o.put("y = max(x").each(MANY, |i| format!(",{i}x")).put(")"))
+            .harmless("linear in its length"),
         text("many named arguments", |o| o.put("fn f(a) = a\ny = f(a=x").each(MANY, |i| format!(",b{i}=1")).put(")")),
     ]
 }
@@ -287,7 +294,8 @@ fn growth() -> Vec<Case> {
             o.put("y = a0\n")
                 .each(MANY, |i| format!("let a{i} = a{0}*a{0}\n", i + 1))
                 .put(format!("let a{last} = x + 1"))
-        }),
+        })
+        .harmless("parts are shared"),
         text("squares of squares, short", |o| {
             o.put("let a0 = x + 1\n").each(2_500, |i| format!("let a{} = a{i} a{i}\n", i + 1)).put("y = a2500")
         })
@@ -300,22 +308,28 @@ fn growth() -> Vec<Case> {
         .harmless("3500 operations"),
         text("400 functions", |o| o.put("y = 0").each(400, |i| format!("+sin({i}x)"))).harmless("1600 operations"),
         text("2000 products", |o| o.put("y = x").each(2_000, |i| format!("*(x-{i})"))).harmless("4000 operations"),
-        text("deriv of deriv", |o| o.put("y = ").times(30, "deriv(").put("sin(x)exp(x)").times(30, ", x)")),
+        text("deriv of deriv", |o| o.put("y = ").times(30, "deriv(").put("sin(x)exp(x)").times(30, ", x)"))
+            .harmless("parts are shared"),
         text("deriv of deriv of a quotient", |o| {
             o.put("y = ").times(12, "deriv(").put("sin(x^2)/(1 + exp(x)^x)").times(12, ", x)")
-        }),
-        text("deriv of a huge product", |o| o.put("y = deriv(x").each(5_000, |i| format!("(x+{i})")).put(", x)")),
+        })
+        .harmless("parts are shared"),
+        text("deriv of a huge product", |o| o.put("y = deriv(x").each(5_000, |i| format!("(x+{i})")).put(", x)"))
+            .harmless("parts are shared"),
         text("derivatives by definitions", |o| {
             o.put("let a0 = sin(x) exp(x y)\n")
                 .each(40, |i| format!("let a{} = deriv(a{i}, x) a{i}\n", i + 1))
                 .put("y = a40")
-        }),
+        })
+        .harmless("parts are shared"),
         text("moved shapes", |o| {
             o.put("let a0 = x^2 + y^2 - 1\n")
                 .each(60, |i| format!("let a{} = a{i}(x + 1, y) a{i}(x, y + 1)\n", i + 1))
                 .put("a60 = 0")
-        }),
-        text("a huge list", |o| o.put("let v = [1").times(MANY, ",x").put("]\ny = |v|")),
+        })
+        .harmless("parts are shared"),
+        text("a huge list", |o| o.put("let v = [1").times(MANY, ",x").put("]\ny = |v|"))
+            .harmless("linear in its length"),
         text("sums of huge lists", |o| {
             o.put("let v = [1").each(5_000, |i| format!(",{i}x")).put("]\ny = |v").times(5_000, "+v").put("|")
         }),
@@ -332,15 +346,18 @@ fn scenes() -> Vec<Case> {
         short("domain [a, b]^100000", "x + y = 1\ndomain [0, 1]^100000"),
         text("a domain of 100 000 ranges", |o| o.put("x = y\ndomain [0, 1]").times(MANY, " x [0, 1]")),
         text("100 000 domains", |o| o.put("x = y\n").times(MANY, "domain [0, 1]^2\n")),
-        text("100 000 shapes", |o| o.each(MANY, |i| format!("x + {i}y = 1\n"))),
-        text("100 000 named shapes", |o| o.each(MANY, |i| format!("curve c{i}: x + {i}y = 1\n"))),
+        text("100 000 shapes", |o| o.each(MANY, |i| format!("x + {i}y = 1\n"))).harmless("linear in its length"),
+        text("100 000 named shapes", |o| o.each(MANY, |i| format!("curve c{i}: x + {i}y = 1\n")))
+            .harmless("linear in its length"),
         text("2000 shapes", |o| o.each(2_000, |i| format!("curve c{i}: x^2 + {i}y = 1\n"))).harmless("8000 operations"),
         text("100 000 materials", |o| {
             o.put("surface s: x + y + z = 1\n").times(MANY, "material(s, color = \"red\")\n")
         }),
-        text("100 000 lights", |o| o.put("surface s: x + y + z = 1\n").times(MANY, "light([1, 2, 3])\n")),
+        text("100 000 lights", |o| o.put("surface s: x + y + z = 1\n").times(MANY, "light([1, 2, 3])\n"))
+            .harmless("linear in its length"),
         short("nothing bounded", "sin(x y) cos(x + y) tan(x^3 y) = floor(x) mod(y, 3)").harmless("nothing large"),
-        text("a domain that is hard to find", |o| o.put("0 = 1").each(900, |i| format!("+sin({i}x)cos({i}y)exp(z)"))),
+        text("a domain that is hard to find", |o| o.put("0 = 1").each(900, |i| format!("+sin({i}x)cos({i}y)exp(z)")))
+            .harmless("the search is bounded"),
     ]
 }
 
