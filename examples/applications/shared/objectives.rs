@@ -13,14 +13,6 @@ use crate::branch::Bounds;
 use crate::branch::Objective;
 use crate::branch::Side;
 
-/// Minimisers of Himmelblau's function: the first is exact.
-pub const HIMMELBLAU: [[f64; 2]; 4] = [
-    [3.0, 2.0],
-    [-2.805_118_086_952_745, 3.131_312_518_250_573],
-    [-3.779_310_253_377_747, -3.283_185_991_286_169],
-    [3.584_428_340_330_491_7, -1.848_126_526_964_403_6],
-];
-
 /// The formulas, by name, with the domain of each variable. No domain is halved towards a minimiser, which would be luck.
 pub const NAMES: [(&str, [f64; 2]); 4] =
     [("Himmelblau", [-6.0, 5.0]), ("Rosenbrock", [-5.0, 10.0]), ("Ackley", [-30.0, 35.0]), ("Rastrigin", [-5.0, 5.5])];
