@@ -35,14 +35,14 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 4 MiB of text, a million steps and nodes, a minute.
+    /// 1 MiB of text, a million steps and nodes, a minute.
     fn default() -> Self {
         Self {
-            source_bytes: 4 << 20,
+            source_bytes: 1 << 20,
             files: 1000,
             steps: 1_000_000,
             nodes: 1_000_000,
-            operations: 400_000,
+            operations: 4_000_000,
             time: Duration::from_secs(60),
         }
     }

@@ -9,6 +9,8 @@ mod names;
 mod rust;
 mod script;
 
+pub use crate::codegen::object::Level;
+pub use crate::derive::Precision;
 pub use export::Export;
 pub use export::Selection;
 pub use export::library;

@@ -22,7 +22,7 @@ use crate::library::Program;
 use crate::session;
 
 /// Compiles the functions of files for the program that is being built, with the usual kernels, in double precision. It
-/// then has them with `imp::include_kernels!()`, one module a file.
+/// then has them with `imp_runtime::include_kernels!()`, one module a file.
 ///
 /// ```no_run
 /// fn main() -> Result<(), imp::Error> {

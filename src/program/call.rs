@@ -358,7 +358,13 @@ impl Lowerer<'_> {
             return Meaning::Invalid;
         }
         let before = self.graph.len();
-        let derivative = (self.differentiate)(&mut self.graph, f, by);
+        let derivative = match (self.differentiate)(&mut self.graph, f, by, self.budget) {
+            Ok(derivative) => derivative,
+            Err(exceeded) => {
+                self.give_up(Diagnostic::from(exceeded).at(*f_span, "of the derivatives of this"));
+                return Meaning::Invalid;
+            }
+        };
         // Derivatives of derivatives grow with every order.
         if !self.spend(self.graph.len() - before, *f_span) {
             return Meaning::Invalid;

@@ -48,7 +48,7 @@ pub(super) struct Lowerer<'p> {
     pub graph: Graph,
     pub exact: Exact,
     pub differentiate: &'p Differentiate,
-    budget: &'p Budget,
+    pub budget: &'p Budget,
     diagnostics: Vec<Diagnostic>,
     reported: HashSet<(&'static str, Option<Span>)>,
     /// By item, once evaluated.
@@ -181,9 +181,10 @@ impl<'p> Lowerer<'p> {
     }
 
     /// Ends the work: once, wherever a limit is met first; everything after it is given up too.
-    fn give_up(&mut self, diagnostic: Diagnostic) {
-        self.exhausted = true;
-        self.diagnostics.push(diagnostic);
+    pub fn give_up(&mut self, diagnostic: Diagnostic) {
+        if !std::mem::replace(&mut self.exhausted, true) {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     /// Lowers `body` with the parameters of a called function.

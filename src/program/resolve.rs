@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::collections::HashSet;
 
+use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
 use crate::diagnostic::SourceMap;
@@ -13,6 +14,7 @@ use crate::graph::Op;
 use crate::graph::Value;
 use crate::interval::Interval;
 use crate::limits::Budget;
+use crate::limits::Exceeded;
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::Module;
 use crate::syntax::ast::Name;
@@ -39,8 +41,8 @@ use super::settings::Settings;
 use super::values::Meaning;
 
 /// Symbolic differentiation, which a higher layer provides: adds the derivative of the second argument by the third, an
-/// input, to the graph.
-pub type Differentiate = dyn Fn(&mut Graph, Value, Value) -> Value;
+/// input, to the graph, within a budget.
+pub type Differentiate = dyn Fn(&mut Graph, Value, Value, &Budget) -> Result<Value, Exceeded>;
 
 /// What resolving needs from outside.
 pub struct Context<'a> {
@@ -94,7 +96,10 @@ pub fn resolve(
     let domain_given = written.is_some();
     let domain = match written {
         Some((domain, _)) => domain,
-        None => default_domain(&graph, &shapes, &parameters, dimension),
+        None => match default_domain(&graph, &shapes, &parameters, dimension, context.budget) {
+            Ok(domain) => domain,
+            Err(exceeded) => return (None, vec![exceeded.into()]),
+        },
     };
     let scene = Scene { graph, shapes, parameters, domain, domain_given, view: settings.view };
     (Some(scene), Vec::new())
@@ -429,8 +434,9 @@ fn compact(graph: &Graph, mut shapes: Vec<Shape>) -> (Graph, Vec<Shape>) {
     (result, shapes)
 }
 
-/// In the order of the source, messages without a place last.
-pub(super) fn sort(diagnostics: &mut [Diagnostic]) {
+/// In the order of the source, messages without a place last; no more than anyone reads.
+pub(super) fn sort(diagnostics: &mut Vec<Diagnostic>) {
     let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| (label.span.file, label.span.start));
     diagnostics.sort_by_key(|diagnostic| (place(diagnostic).is_none(), place(diagnostic)));
+    diagnostic::shorten(diagnostics);
 }

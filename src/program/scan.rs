@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use std::rc::Rc;
 
 use crate::diagnostic::Diagnostic;
+use crate::diagnostic::MAX_SHOWN;
 use crate::diagnostic::SourceMap;
 use crate::diagnostic::Span;
 use crate::diagnostic::did_you_mean;
@@ -78,6 +79,8 @@ impl Program {
                 match state[needed.0] {
                     State::New => path.push((needed, 0)),
                     State::Done => {}
+                    // A circle through what is in another one is not reported.
+                    State::Open if self.items[item.0].broken || self.items[needed.0].broken => {}
                     State::Open => {
                         let start = path.iter().position(|(on_path, _)| *on_path == needed).unwrap_or(0);
                         let circle: Vec<ItemId> = path[start..].iter().map(|(item, _)| *item).collect();
@@ -177,11 +180,15 @@ impl Program {
                 scan.diagnostics.push(errors::ambiguous_name(name, span, place(first), place(second)));
             }
             Lookup::Unknown => {
-                let lost =
-                    self.files[file].origin.faulty && is_introduced(name, &scan.sources.get(self.files[file].id).text);
+                let lost = scan.reported.len() <= MAX_SHOWN
+                    && self.files[file].origin.faulty
+                    && is_introduced(name, &scan.sources.get(self.files[file].id).text);
                 if !lost && scan.reported.insert((file, name.to_owned())) {
                     let diagnostic = errors::unknown_name(name, span, used.called);
-                    scan.diagnostics.push(self.help_unknown(diagnostic, file, name, used));
+                    // Suggestions look at every name; nobody sees those of later messages.
+                    let shown = scan.reported.len() <= MAX_SHOWN;
+                    let diagnostic = if shown { self.help_unknown(diagnostic, file, name, used) } else { diagnostic };
+                    scan.diagnostics.push(diagnostic);
                 }
             }
         }

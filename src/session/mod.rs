@@ -35,6 +35,7 @@ use crate::program::scene::Scene;
 use crate::syntax;
 use crate::syntax::ast::Module;
 
+pub use crate::session::backend::Within;
 pub use crate::session::backend::backend;
 pub use crate::session::load::bytes;
 pub use crate::session::save::cannot_write;
@@ -139,7 +140,7 @@ impl Artefact {
 
         // Tree to formulas in one graph, with the scene around them. Statements that could not be read do not keep the
         // others from being checked.
-        let context = |overrides| Context { importer, differentiate: &derive::derivative, overrides, budget };
+        let context = |overrides| Context { importer, differentiate: &derive::derivative_within, overrides, budget };
         let overrides = self.values(overrides, &context(&[]))?;
         let (resolved, found) = program::resolve(&mut self.sources, file, parsed, &context(&overrides));
         self.resolved = resolved;

@@ -23,6 +23,7 @@ mod token;
 
 use lalrpop_util::ParseError;
 
+use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
 use crate::diagnostic::code;
@@ -44,9 +45,6 @@ pub use crate::syntax::layout::wants_more;
 mod grammar {
     include!(concat!(env!("OUT_DIR"), "/imp.rs"));
 }
-
-/// Past so many messages the rest is only counted.
-const MAX_REPORTED: usize = 100;
 
 /// Reads a file. Statements with errors are left out of the module; the messages come in the order of the text.
 /// An empty file is an empty module.
@@ -168,10 +166,6 @@ fn run<'t, T>(
 /// Messages in the order of the text, and not more of them than anyone reads.
 fn finish(mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     found.sort_by_key(|d| d.labels.first().map(|l| l.span.start));
-    if found.len() > MAX_REPORTED {
-        let more = found.len() - MAX_REPORTED;
-        found.truncate(MAX_REPORTED);
-        found.push(Diagnostic::error(code::TOO_MANY_ERRORS, format!("{more} more errors are not shown")));
-    }
+    diagnostic::shorten(&mut found);
     found
 }
