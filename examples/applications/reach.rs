@@ -23,6 +23,7 @@ use imp::Interval;
 use imp::IntervalKernel;
 use imp::Options;
 use imp::Program;
+use imp::interval::NoInterval;
 use rayon::prelude::*;
 
 const ARM: &str = "
@@ -238,11 +239,11 @@ fn map(arm: &Arm, cells: usize) -> Result<(Vec<Cell>, usize), Box<dyn Error>> {
     Ok((map, examined))
 }
 
-fn interval(lo: f64, hi: f64) -> Result<Interval, Box<dyn Error>> {
-    Interval::new(lo, hi).ok_or_else(|| format!("[{lo}, {hi}] is no interval").into())
+fn interval(lo: f64, hi: f64) -> Result<Interval, NoInterval> {
+    Interval::try_from(lo..=hi)
 }
 
-fn halves(side: Interval) -> Result<[Interval; 2], Box<dyn Error>> {
+fn halves(side: Interval) -> Result<[Interval; 2], NoInterval> {
     Ok([interval(side.lo(), side.mid())?, interval(side.mid(), side.hi())?])
 }
 

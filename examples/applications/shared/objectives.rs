@@ -3,9 +3,9 @@
 //! variables); H. Rosenbrock, 1960; D. Ackley, 1987; L. Rastrigin, 1974.
 
 use imp::Error;
+use imp::Function;
 use imp::IntervalKernel;
 use imp::Options;
-use imp::Program;
 
 use crate::branch::Area;
 use crate::branch::Bounds;
@@ -47,7 +47,7 @@ impl Compiled {
     /// What Imp says of the formula.
     pub fn new<const N: usize>(formula: &str) -> Result<Self, Error> {
         let variables: [String; N] = std::array::from_fn(|i| format!("x{}", i + 1));
-        let function = Program::parse("")?.expression(formula, &variables.each_ref().map(String::as_str))?;
+        let function = Function::parse(formula, &variables.each_ref().map(String::as_str))?;
         let (values, slopes) =
             (function.intervals(&Options::default())?, function.intervals(&Options::with_gradient())?);
         Ok(Self { values, slopes })
@@ -56,11 +56,11 @@ impl Compiled {
 
 impl<const N: usize> Objective<N> for Compiled {
     fn values(&self, _: usize, boxes: &[Side], values: &mut [Bounds]) {
-        self.values.packets().run(self.values.uniforms(), boxes.as_flattened(), values.as_flattened_mut());
+        self.values.enclose_packets(boxes.as_flattened(), values.as_flattened_mut());
     }
 
     fn slopes(&self, _: usize, boxes: &[Side], slopes: &mut [Bounds]) {
-        self.slopes.packets().run(self.slopes.uniforms(), boxes.as_flattened(), slopes.as_flattened_mut());
+        self.slopes.enclose_packets(boxes.as_flattened(), slopes.as_flattened_mut());
     }
 }
 
