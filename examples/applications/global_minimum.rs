@@ -18,11 +18,18 @@ use branch::Area;
 use branch::heaps;
 use branch::minimise;
 use objectives::Compiled;
-use objectives::HIMMELBLAU;
 use objectives::NAMES;
 use objectives::cube;
 use objectives::formula;
 use rayon::ThreadPoolBuilder;
+
+/// Minimisers of Himmelblau's function: the first is exact.
+const HIMMELBLAU: [[f64; 2]; 4] = [
+    [3.0, 2.0],
+    [-2.805_118_086_952_745, 3.131_312_518_250_573],
+    [-3.779_310_253_377_747, -3.283_185_991_286_169],
+    [3.584_428_340_330_491_7, -1.848_126_526_964_403_6],
+];
 
 /// Boxes are split until no side is longer.
 const RESOLUTION: f64 = 1e-8;

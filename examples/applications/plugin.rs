@@ -41,11 +41,22 @@ struct Plugin {
 }
 
 impl Plugin {
-    fn new(number: usize, line: &str) -> Result<Self, Error> {
-        let definitions = Loader::new(format!("line {number}"), Limits::untrusted()).parse("")?;
-        let function = definitions.expression(line, &["x"])?;
-        let bounds = function.intervals(&Options::default())?;
-        let values = function.points(&Options::default())?;
+    /// Compiles a line, or says what is wrong with it.
+    fn new(line: &str) -> Result<Self, String> {
+        let plugin = || {
+            let function = Loader::new("formula", Limits::untrusted()).parse("")?.expression(line, &["x"])?;
+            let (bounds, values) = (function.intervals(&Options::default())?, function.points(&Options::default())?);
+            Ok((bounds, values))
+        };
+        let (bounds, values) = plugin().map_err(|said: Error| said.to_string())?;
+        let function = bounds.function();
+        // The coordinates y and z and the time may be used wherever they are not arguments.
+        match function.variables() {
+            [_] if function.outputs().len() == 1 => {}
+            [_] => return Err("one number was expected, not a list".to_owned()),
+            [_, others @ ..] => return Err(format!("the formula depends on {}, too", others.join(", "))),
+            [] => return Err("the formula has no variable".to_owned()),
+        }
         Ok(Plugin { text: line.to_owned(), bounds, values, calls: Default::default() })
     }
 
@@ -101,6 +112,7 @@ fn script() -> Vec<(String, bool)> {
         ("sin(2x) + x/3", true),
         ("sqrt(1 - x^2)", true),
         ("sqrt(1 - y^2)", false),
+        ("[x, x^2]", false),
         ("1/x", true),
         ("(x + 1", false),
         ("x +* 2", false),
@@ -121,9 +133,9 @@ fn script() -> Vec<(String, bool)> {
     script
 }
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let by_hand = std::env::args().nth(1).as_deref() == Some("-");
-    let current = RwLock::new(Arc::new(Plugin::new(0, "x")?));
+    let current = RwLock::new(Arc::new(Plugin::new("x")?));
     let get = || Arc::clone(&current.read().unwrap_or_else(PoisonError::into_inner));
     let done = AtomicBool::new(false);
     let work = |worker: usize| {
@@ -136,12 +148,11 @@ fn main() -> Result<(), Error> {
     thread::scope(|scope| {
         let stop = Stop(&done);
         let workers: Vec<_> = (0..WORKERS).map(|worker| scope.spawn(move || work(worker))).collect();
-        let mut take = |number: usize, line: &str| -> Result<bool, Error> {
+        let mut take = |line: &str| -> Result<bool, Error> {
             let start = Instant::now();
-            let plugin = match Plugin::new(number, line) {
+            let plugin = match Plugin::new(line) {
                 Ok(plugin) => plugin,
                 Err(said) => {
-                    let said = said.to_string();
                     // Of a line without end the beginning is enough.
                     let lines = said.lines().map(|line| line.chars().take(100).collect::<String>());
                     println!("refused in {:.1?}\n{}\n", start.elapsed(), lines.collect::<Vec<_>>().join("\n"));
@@ -161,7 +172,7 @@ fn main() -> Result<(), Error> {
             Ok(true)
         };
         let outcome = if by_hand {
-            stdin().lines().map_while(Result::ok).enumerate().try_for_each(|(i, line)| take(i + 1, &line).map(|_| ()))
+            stdin().lines().map_while(Result::ok).try_for_each(|line| take(&line).map(|_| ()))
         } else {
             play(&mut take)
         };
@@ -169,15 +180,15 @@ fn main() -> Result<(), Error> {
         for worker in workers {
             worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
         }
-        outcome
+        Ok(outcome?)
     })
 }
 
 /// Takes the lines of the script, each as it should be taken.
-fn play(take: &mut impl FnMut(usize, &str) -> Result<bool, Error>) -> Result<(), Error> {
+fn play(take: &mut impl FnMut(&str) -> Result<bool, Error>) -> Result<(), Error> {
     let script = script();
     for (i, (line, good)) in script.iter().enumerate() {
-        let taken = take(i + 1, line)?;
+        let taken = take(line)?;
         assert_eq!(taken, *good, "line {}: {:.60}", i + 1, line);
     }
     let good = script.iter().filter(|(_, good)| *good).count();

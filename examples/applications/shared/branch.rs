@@ -158,7 +158,7 @@ impl<const N: usize, F: Objective<N>> Search<'_, N, F> {
     fn examine(&self, known: f64, part: &[Entry], buffers: &mut Buffers<N>) -> Outcome<N> {
         let groups = part.len().div_ceil(LANES);
         let Buffers { boxes, middles, values, slopes, children } = buffers;
-        gather(boxes, part.iter().map(|entry| &self.boxes[entry.place as usize]));
+        gather(&mut boxes[..groups * N], part.iter().map(|entry| &self.boxes[entry.place as usize]));
         let (sides, middles) = (&boxes[..groups * N], &mut middles[..groups * N]);
         for (middle, [lo, hi]) in middles.iter_mut().zip(sides) {
             let at: [f64; LANES] = std::array::from_fn(|k| 0.5 * hi.0[k] - 0.5 * lo.0[k]);
@@ -173,29 +173,31 @@ impl<const N: usize, F: Objective<N>> Search<'_, N, F> {
 
         children.clear();
         for (g, entries) in part.chunks(LANES).enumerate() {
-            let slopes = &slopes[g * (N + 1)..][..N + 1];
-            let centred = centred_form(&sides[g * N..][..N], &middles[g * N..][..N], &at_middles[g], &slopes[1..]);
+            let (sides, slopes) = (&sides[g * N..][..N], &slopes[g * (N + 1)..][..N + 1]);
+            let continuous = slopes[0][2].0.map(|bits| bits.verdict() & verdict::CONTINUOUS != 0);
+            let centred = centred_form::<N>(sides, &middles[g * N..][..N], &at_middles[g], &slopes[1..]);
+            let Outlook { hopeless, faces, along } = outlook(sides, &slopes[1..], self.domain, self.resolution);
             for (k, entry) in entries.iter().enumerate() {
-                let continuous = slopes[0][2].0[k].verdict() & verdict::CONTINUOUS != 0;
-                let centred = if continuous { centred[k] } else { f64::NEG_INFINITY };
                 // Comparisons with what is no number are false, and change nothing.
                 let natural = -slopes[0][0].0[k];
                 let bound = if natural > entry.bound { natural } else { entry.bound };
-                let bound = if centred > bound { centred } else { bound };
-                if bound > upper {
+                let bound = if continuous[k] && centred[k] > bound { centred[k] } else { bound };
+                if bound > upper || continuous[k] && hopeless[k] {
                     continue;
                 }
                 let mut area = self.boxes[entry.place as usize];
-                let slope = |i: usize| [-slopes[i + 1][0].0[k], slopes[i + 1][1].0[k]];
-                if continuous && !(0..N).all(|i| narrow_by_sign(&mut area[i], self.domain[i], slope(i))) {
-                    continue;
+                let mut along = along[k];
+                if continuous[k] && faces[k] {
+                    for (side, slope) in area.iter_mut().zip(&slopes[1..]) {
+                        narrow_by_sign(side, [-slope[0].0[k], slope[1].0[k]]);
+                    }
+                    along = NOWHERE;
                 }
-                let steepness = std::array::from_fn(|i| slope(i)[1].max(-slope(i)[0]));
-                split(&area, self.resolution, steepness, |half| children.push((bound, half)));
+                split(&area, self.resolution, along, |half| children.push((bound, half)));
             }
         }
         let groups = children.len().div_ceil(LANES);
-        gather(boxes, children.iter().map(|(_, area)| area));
+        gather(&mut boxes[..groups * N], children.iter().map(|(_, area)| area));
         self.f.values(children.len(), &boxes[..groups * N], &mut values[..groups]);
         let mut outcome = Outcome {
             upper,
@@ -218,16 +220,56 @@ impl<const N: usize, F: Objective<N>> Search<'_, N, F> {
     }
 }
 
-/// Boxes into packets; what is left of the last group repeats the first box.
-fn gather<'a, const N: usize>(packets: &mut [Side], boxes: impl ExactSizeIterator<Item = &'a Area<N>> + Clone) {
-    let count = boxes.len();
-    let padding = boxes.clone().cycle().take(count.next_multiple_of(LANES));
-    for (k, area) in padding.enumerate() {
-        for (side, [lo, hi]) in packets[k / LANES * N..][..N].iter_mut().zip(area) {
-            side[0].0[k % LANES] = -lo;
-            side[1].0[k % LANES] = *hi;
+/// Boxes into packets; what is left of the last group repeats its first box.
+fn gather<'a, const N: usize>(packets: &mut [Side], mut boxes: impl ExactSizeIterator<Item = &'a Area<N>>) {
+    for group in packets.chunks_exact_mut(N) {
+        let Some(first) = boxes.next() else { return };
+        let mut area = first;
+        for k in 0..LANES {
+            for i in 0..N {
+                group[i][0].0[k] = -area[i][0];
+                group[i][1].0[k] = area[i][1];
+            }
+            area = if k + 1 < LANES { boxes.next().unwrap_or(first) } else { first };
         }
     }
+}
+
+/// What the slopes say of eight boxes.
+struct Outlook {
+    /// A derivative has one sign, and the end to which the function falls is no end of the domain: no minimiser is here.
+    hopeless: [bool; LANES],
+    /// A derivative has one sign, and the end to which the function falls is one of the domain: minimisers are there.
+    faces: [bool; LANES],
+    /// The coordinate along which the function may vary most; [`NOWHERE`] if no side is long enough, or that is not known.
+    along: [usize; LANES],
+}
+
+const NOWHERE: usize = usize::MAX;
+
+fn outlook<const N: usize>(sides: &[Side], slopes: &[Bounds], domain: &Area<N>, resolution: f64) -> Outlook {
+    let (mut hopeless, mut faces, mut known) = ([false; LANES], [false; LANES], [true; LANES]);
+    let (mut along, mut most) = ([NOWHERE; LANES], [-1.0; LANES]);
+    for i in 0..N {
+        let ([lo, hi], [below, above, _], [start, end]) = (&sides[i], &slopes[i], domain[i]);
+        for k in 0..LANES {
+            let (rises, falls) = (below.0[k] < 0.0, above.0[k] < 0.0);
+            let inside = (rises & (-lo.0[k] > start)) | (falls & (hi.0[k] < end));
+            hopeless[k] |= inside;
+            faces[k] |= rises | falls;
+            let (length, steepness) =
+                (hi.0[k] + lo.0[k], if above.0[k] > below.0[k] { above.0[k] } else { below.0[k] });
+            known[k] &= steepness < f64::INFINITY;
+            let score = length * steepness;
+            let better = (length > resolution) & (score > most[k]);
+            most[k] = if better { score } else { most[k] };
+            along[k] = if better { i } else { along[k] };
+        }
+    }
+    for k in 0..LANES {
+        along[k] = if known[k] { along[k] } else { NOWHERE };
+    }
+    Outlook { hopeless, faces, along }
 }
 
 /// Lower bounds f(c) + sum of f_i(X) (X_i - c_i) of eight boxes at once.
@@ -236,10 +278,16 @@ fn gather<'a, const N: usize>(packets: &mut [Side], boxes: impl ExactSizeIterato
 /// min(a d2, b d1). Each term has the errors of a difference and a product, the sum one of each addition: relative to the
 /// sum of magnitudes less than (N + 3) 2^-53 in all, and what underflows loses less than 2^-1073 a term. The factor below is
 /// larger by far. Infinite slopes give NaN or -inf, which bound nothing.
-fn centred_form(boxes: &[Side], middles: &[Side], at_middles: &Bounds, slopes: &[Bounds]) -> [f64; LANES] {
+fn centred_form<const N: usize>(
+    boxes: &[Side],
+    middles: &[Side],
+    at_middles: &Bounds,
+    slopes: &[Bounds],
+) -> [f64; LANES] {
     let mut sum = at_middles[0].0.map(|negated| -negated);
     let mut magnitude = sum.map(f64::abs);
-    for ((side, middle), slope) in boxes.iter().zip(middles).zip(slopes) {
+    for i in 0..N {
+        let (side, middle, slope) = (&boxes[i], &middles[i], &slopes[i]);
         for k in 0..LANES {
             let (left, right) = (-side[0].0[k] - middle[1].0[k], side[1].0[k] - middle[1].0[k]);
             let (falling, rising) = (slope[1].0[k] * left, -slope[0].0[k] * right);
@@ -249,39 +297,28 @@ fn centred_form(boxes: &[Side], middles: &[Side], at_middles: &Bounds, slopes: &
             magnitude[k] += term.abs();
         }
     }
-    let slack = (boxes.len() + 8) as f64 * f64::EPSILON;
+    let slack = (N + 8) as f64 * f64::EPSILON;
     std::array::from_fn(|k| sum[k] - (slack * magnitude[k] + f64::MIN_POSITIVE))
 }
 
-/// Whether a minimiser of the domain can lie in this side, where the derivative along it has the given enclosure. If the
-/// function rises (falls) all along, only in the end that is an end of the domain, too.
-fn narrow_by_sign(side: &mut [f64; 2], domain: [f64; 2], slope: [f64; 2]) -> bool {
+/// The end to which the function falls, if its derivative along this side has one sign.
+fn narrow_by_sign(side: &mut [f64; 2], slope: [f64; 2]) {
     if slope[0] > 0.0 {
         side[1] = side[0];
-        return side[0] <= domain[0];
-    }
-    if slope[1] < 0.0 {
+    } else if slope[1] < 0.0 {
         side[0] = side[1];
-        return side[1] >= domain[1];
     }
-    true
 }
 
-/// Halves the side along which the function may vary most, or the longest if that is not known.
-fn split<const N: usize>(area: &Area<N>, resolution: f64, slopes: [f64; N], mut child: impl FnMut(Area<N>)) {
-    let known = slopes.iter().all(|slope| slope.is_finite());
-    let mut best = None;
-    for (i, [lo, hi]) in area.iter().enumerate() {
-        let length = hi - lo;
-        let score = if known { length * slopes[i] } else { length };
-        if length > resolution && best.is_none_or(|(most, _)| score > most) {
-            best = Some((score, i));
-        }
-    }
-    let Some((_, i)) = best else {
+/// Halves a side: the given one, or the longest. A box without long sides stays whole.
+fn split<const N: usize>(area: &Area<N>, resolution: f64, along: usize, mut child: impl FnMut(Area<N>)) {
+    let length = |i: usize| area[i][1] - area[i][0];
+    let longest = || (0..N).max_by(|&i, &j| length(i).total_cmp(&length(j))).unwrap_or(0);
+    let i = if along == NOWHERE { longest() } else { along };
+    if length(i) <= resolution {
         child(*area);
         return;
-    };
+    }
     let middle = 0.5 * area[i][0] + 0.5 * area[i][1];
     let (mut left, mut right) = (*area, *area);
     left[i][1] = middle;

@@ -3,23 +3,15 @@
 //! variables); H. Rosenbrock, 1960; D. Ackley, 1987; L. Rastrigin, 1974.
 
 use imp::Error;
+use imp::Function;
 use imp::IntervalKernel;
 use imp::Options;
-use imp::Program;
 
 use crate::branch::Area;
 use crate::branch::Bounds;
 
 use crate::branch::Objective;
 use crate::branch::Side;
-
-/// Minimisers of Himmelblau's function: the first is exact.
-pub const HIMMELBLAU: [[f64; 2]; 4] = [
-    [3.0, 2.0],
-    [-2.805_118_086_952_745, 3.131_312_518_250_573],
-    [-3.779_310_253_377_747, -3.283_185_991_286_169],
-    [3.584_428_340_330_491_7, -1.848_126_526_964_403_6],
-];
 
 /// The formulas, by name, with the domain of each variable. No domain is halved towards a minimiser, which would be luck.
 pub const NAMES: [(&str, [f64; 2]); 4] =
@@ -55,7 +47,7 @@ impl Compiled {
     /// What Imp says of the formula.
     pub fn new<const N: usize>(formula: &str) -> Result<Self, Error> {
         let variables: [String; N] = std::array::from_fn(|i| format!("x{}", i + 1));
-        let function = Program::parse("")?.expression(formula, &variables.each_ref().map(String::as_str))?;
+        let function = Function::parse(formula, &variables.each_ref().map(String::as_str))?;
         let (values, slopes) =
             (function.intervals(&Options::default())?, function.intervals(&Options::with_gradient())?);
         Ok(Self { values, slopes })
@@ -64,11 +56,11 @@ impl Compiled {
 
 impl<const N: usize> Objective<N> for Compiled {
     fn values(&self, _: usize, boxes: &[Side], values: &mut [Bounds]) {
-        self.values.packets().run(self.values.uniforms(), boxes.as_flattened(), values.as_flattened_mut());
+        self.values.enclose_packets(boxes.as_flattened(), values.as_flattened_mut());
     }
 
     fn slopes(&self, _: usize, boxes: &[Side], slopes: &mut [Bounds]) {
-        self.slopes.packets().run(self.slopes.uniforms(), boxes.as_flattened(), slopes.as_flattened_mut());
+        self.slopes.enclose_packets(boxes.as_flattened(), slopes.as_flattened_mut());
     }
 }
 
