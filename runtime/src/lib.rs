@@ -26,7 +26,8 @@
 //! }
 //! ```
 //!
-//! A program that has the whole of Imp among its dependencies finds the macro there, too: `imp::include_kernels!()`.
+//! Who writes `imp = { package = "imp-runtime", .. }` says `imp::Interval` and `imp::include_kernels!()`; Cargo takes the same
+//! name for both packages if they come from one registry or one repository, and not if they are given by their paths.
 #![no_std]
 #![warn(missing_docs)]
 
