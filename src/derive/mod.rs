@@ -42,6 +42,7 @@ pub use ray::DIRECTION;
 pub use ray::ORIGIN;
 pub use ray::PARAMETER;
 pub use ray::RayGraph;
+pub use ray::along_line;
 pub use ray::along_ray;
 pub use ray::centred;
 

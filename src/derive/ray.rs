@@ -26,17 +26,22 @@ pub struct RayGraph {
 
 /// Replaces the first `dimension` coordinates by o + t d; other inputs stay.
 pub fn along_ray(source: &Graph, roots: &[Value], dimension: usize) -> RayGraph {
+    along_line(source, roots, &COORDINATES[..dimension])
+}
+
+/// Replaces inputs by the coordinates of o + t d, in their order, at most three; other inputs stay.
+pub fn along_line(source: &Graph, roots: &[Value], inputs: &[&str]) -> RayGraph {
     let mut graph = Graph::new();
-    let origins: Vec<Value> = ORIGIN[..dimension].iter().map(|name| graph.var(name)).collect();
-    let directions: Vec<Value> = DIRECTION[..dimension].iter().map(|name| graph.var(name)).collect();
+    let origins: Vec<Value> = ORIGIN[..inputs.len()].iter().map(|name| graph.var(name)).collect();
+    let directions: Vec<Value> = DIRECTION[..inputs.len()].iter().map(|name| graph.var(name)).collect();
     let t = graph.var(PARAMETER);
     let mut replace = HashMap::new();
     let mut coordinates = Vec::new();
-    for i in 0..dimension {
+    for (i, &input) in inputs.iter().enumerate() {
         let step = graph.mul(t, directions[i]);
         let coordinate = graph.add(origins[i], step);
         coordinates.push(coordinate);
-        replace.insert(COORDINATES[i].to_owned(), coordinate);
+        replace.insert(input.to_owned(), coordinate);
     }
     let roots = graph.import(source, roots, &replace);
     RayGraph { graph, roots, coordinates, t }

@@ -1,7 +1,7 @@
 //! `imp repl`: calculating with boxes, line by line.
 //!
 //! [`State`] is the whole session: a line in, a text out. What is around it only edits lines (`complete`), reads them
-//! from a terminal or a pipe and prints the answers (here). One file a group of commands: `compare`, `roots` on `newton`,
+//! from a terminal or a pipe and prints the answers (here). One file a group of commands: `compare`, `roots`,
 //! `derivative` on `formula`, `inspect`, `plot` on `chart`; `commands` is the table of all.
 
 mod chart;
@@ -11,7 +11,6 @@ mod complete;
 mod derivative;
 mod formula;
 mod inspect;
-mod newton;
 mod plot;
 mod roots;
 mod state;

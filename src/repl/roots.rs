@@ -1,14 +1,16 @@
 //! `:root`: the zeros of an expression as text.
 
+use crate::control::Control;
 use crate::diagnostic::code;
 use crate::interval::Interval;
-use crate::repl::newton::Root;
-use crate::repl::newton::Roots;
-use crate::repl::newton::Search;
 use crate::repl::plot::short;
 use crate::repl::state::State;
 use crate::repl::state::is_number;
 use crate::repl::state::trim;
+use crate::roots::Options;
+use crate::roots::Root;
+use crate::roots::Roots;
+use crate::roots::Search;
 use crate::session::expression::Messages;
 use crate::session::expression::Reading;
 use crate::session::expression::Snippet;
@@ -59,7 +61,8 @@ pub fn root(state: &mut State, arguments: &Snippet) -> Result<String, Messages> 
             return Err(fault.help(format!("give one of them a number, such as `{second} = 0.5`")));
         }
     };
-    let roots = Search::new(&expression.graph, expression.root, &boxes, variable).run(range);
+    let search = Search::new(&expression.graph, expression.root, &boxes, variable);
+    let roots = search.run(range, &Options::default(), &Control::default());
     Ok(report(&roots, range))
 }
 

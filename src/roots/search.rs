@@ -1,5 +1,5 @@
-//! All zeros of a function of one variable in an interval, proved: interval Newton with bisection on the reference
-//! arithmetic (Moore, Interval Analysis, 1966; Hansen and Walster, Global Optimization Using Interval Analysis, 2004).
+//! The reference search: interval Newton with bisection on the reference arithmetic (Moore, Interval Analysis, 1966;
+//! Hansen and Walster, Global Optimization Using Interval Analysis, 2004).
 //!
 //! A zero is proved by opposite signs at the ends of an interval on which the function is proved continuous, by a Newton
 //! step into the interior of such an interval, or by a value that is exactly 0. It is the only one where the derivative
@@ -8,56 +8,38 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
+use crate::control::Control;
 use crate::derive;
 use crate::graph;
 use crate::graph::Graph;
-use crate::graph::Op;
 use crate::graph::Value;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
+use crate::roots::answer::Options;
+use crate::roots::answer::Root;
+use crate::roots::answer::Roots;
+use crate::roots::answer::merged;
+use crate::roots::numbers::is_small;
+use crate::roots::numbers::scale;
+use crate::roots::numbers::simplest;
+use crate::roots::problem::Problem;
 
-/// Evaluations of graph nodes that one search may take.
-const BUDGET: usize = 6_000_000;
-/// Undecided intervals of this part of the search interval, or of a number's size, are given up.
-const RESOLUTION: f64 = 1.0 / (1u64 << 40) as f64;
-/// With so many intervals open, those of the next part of that size are given up: a zero that the function touches, at
-/// which rounding errors decide, would fill the search with ever smaller ones.
-const CROWD: usize = 256;
-const CROWDED: f64 = 1.0 / (1u64 << 26) as f64;
+/// With so many intervals open, those of the next part of the search interval are given up: a zero that the function
+/// touches, at which rounding errors decide, would fill the search with ever smaller ones.
+pub const CROWD: usize = 256;
+pub const CROWDED: f64 = 1.0 / (1u64 << 26) as f64;
 /// Intervals that are looked at once more when the search is over.
 const MAX_RESORTS: usize = 64;
 /// Steps that narrow one bracket; quadratic convergence needs few, bisection one a bit.
 const MAX_STEPS: usize = 200;
 
-/// An interval that is proved to hold a zero.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Root {
-    pub bracket: Interval,
-    /// Where it is proved to be the only zero.
-    pub alone: Option<Interval>,
-}
-
-/// The zeros in an interval: there is none outside of the proved brackets and the unknown rest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Roots {
-    pub proved: Vec<Root>,
-    pub unknown: Vec<Interval>,
-    /// Whether the search ended before everything was tried.
-    pub exhausted: bool,
-}
-
-/// A function of one variable, all others having values.
+/// A function of one unknown, all its other inputs having values: one search on the reference arithmetic.
 pub struct Search {
-    graph: Graph,
-    f: Value,
-    slope: Value,
-    /// Values that are 0 wherever the function is.
-    factors: Vec<Value>,
+    problem: Arc<Problem>,
     boxes: Vec<Decorated>,
-    /// The place of the variable among the boxes.
-    variable: usize,
     spent: usize,
 }
 
@@ -70,25 +52,72 @@ enum Finding {
 }
 
 impl Search {
-    /// `boxes` are those of the graph's variables in their order, `variable` is the place of the one to be searched.
+    /// `boxes` are those of the graph's variables in their order, `variable` is the place of the one to be searched, whose own
+    /// box is not used.
+    ///
+    /// # Panics
+    /// If the boxes are not as many as the variables.
     pub fn new(graph: &Graph, root: Value, boxes: &[Decorated], variable: usize) -> Self {
-        let mut graph = graph.clone();
-        let name = graph.variables()[variable].clone();
-        let x = graph.var(&name);
-        let slope = derive::derivative(&mut graph, root, x);
-        let factors = factors(&mut graph, root);
-        Self { graph, f: root, slope, factors, boxes: boxes.to_vec(), variable, spent: 0 }
+        let problem = Problem::new(graph, root, &graph.variables()[variable]);
+        Self::of(Arc::new(problem), boxes.to_vec(), 0)
+    }
+
+    /// Zeros in t on the exact line origin + t direction of the inputs named `coordinates`, at most three of them. `boxes` are
+    /// those of the graph's variables in their order; those of the coordinates are not used. A line with an end that is no
+    /// number may be anywhere: nothing is proved on it.
+    ///
+    /// # Panics
+    /// If the boxes are not as many as the variables, or origin and direction not as many as the coordinates.
+    pub fn along_ray(
+        graph: &Graph,
+        root: Value,
+        boxes: &[Decorated],
+        coordinates: &[&str],
+        origin: &[f64],
+        direction: &[f64],
+    ) -> Self {
+        assert_eq!(graph.variables().len(), boxes.len(), "one box for each variable");
+        let problem = Problem::along_ray(graph, root, coordinates);
+        let value = |name: &String| {
+            let at = |names: &[&str]| names.iter().position(|n| n == name);
+            match (at(&derive::ORIGIN), at(&derive::DIRECTION), graph.variables().iter().position(|n| n == name)) {
+                (Some(i), _, _) => Decorated::new(number(origin[i])),
+                (_, Some(i), _) => Decorated::new(number(direction[i])),
+                (_, _, Some(i)) => boxes[i],
+                // The unknown.
+                _ => Decorated::ENTIRE,
+            }
+        };
+        let boxes = problem.graph.variables().iter().map(value).collect();
+        Self::of(Arc::new(problem), boxes, 0)
+    }
+
+    /// A search that has spent a part of its budget elsewhere.
+    pub(super) fn of(problem: Arc<Problem>, boxes: Vec<Decorated>, spent: usize) -> Self {
+        assert_eq!(problem.graph.variables().len(), boxes.len(), "one box for each variable");
+        Self { problem, boxes, spent }
     }
 
     /// All zeros in an interval.
-    pub fn run(mut self, range: Interval) -> Roots {
-        let mut roots = Roots { proved: Vec::new(), unknown: Vec::new(), exhausted: false };
-        let mut open = BinaryHeap::from([Open(range)]);
-        let mut rest = Vec::new();
+    pub fn run(self, range: Interval, options: &Options, control: &Control) -> Roots {
+        self.resume(vec![range], Vec::new(), Roots::default(), range, options, control)
+    }
+
+    /// All zeros in an interval, of which only `open` is left to be searched and `rest` to be looked at once more.
+    pub(super) fn resume(
+        mut self,
+        open: Vec<Interval>,
+        mut rest: Vec<Interval>,
+        mut roots: Roots,
+        range: Interval,
+        options: &Options,
+        control: &Control,
+    ) -> Roots {
+        let mut open: BinaryHeap<Open> = open.into_iter().map(Open).collect();
         // The widest first: when the search has to end, what is unknown is as short as can be.
         while let Some(Open(x)) = open.pop() {
             let crowded = open.len() > CROWD && x.width() <= CROWDED * scale(x, range);
-            if self.spent > BUDGET || crowded {
+            if self.spent > options.budget || crowded || control.is_cancelled() {
                 roots.exhausted |= !crowded;
                 rest.push(x);
                 continue;
@@ -97,7 +126,7 @@ impl Search {
                 Finding::Refuted => {}
                 Finding::Root(root) => roots.proved.push(root),
                 Finding::Narrowed(narrower) => open.push(Open(narrower)),
-                Finding::Undecided => match split(x, range) {
+                Finding::Undecided => match split(x, range, options.resolution) {
                     Some(at) => {
                         open.extend(
                             [(x.lo(), at), (at, x.hi())]
@@ -114,7 +143,7 @@ impl Search {
         let rest = merged(rest);
         for (number, &x) in rest.iter().enumerate() {
             match number {
-                0..MAX_RESORTS => self.last_resort(x, range, &mut roots),
+                0..MAX_RESORTS if !control.is_cancelled() => self.last_resort(x, range, &mut roots),
                 _ => roots.unknown.push(x),
             }
         }
@@ -123,14 +152,14 @@ impl Search {
     }
 
     fn enclose(&mut self, value: Value, x: Interval) -> Decorated {
-        self.boxes[self.variable] = Decorated::new(x);
-        self.spent += self.graph.len();
-        graph::enclose(&self.graph, &[value], &self.boxes)[0]
+        self.boxes[self.problem.variable] = Decorated::new(x);
+        self.spent += self.problem.graph.len();
+        graph::enclose(&self.problem.graph, &[value], &self.boxes)[0]
     }
 
     /// The sign of the function at a number: -1, 0 or 1 if proved.
     fn sign(&mut self, x: f64) -> Option<i32> {
-        let value = self.enclose(self.f, Interval::point(x));
+        let value = self.enclose(self.problem.f, Interval::point(x));
         let interval = value.interval();
         match () {
             _ if interval.is_empty() || value.decoration() < Decoration::Def => None,
@@ -146,7 +175,7 @@ impl Search {
         if excludes(value) {
             return true;
         }
-        (0..self.factors.len()).any(|i| excludes(self.enclose(self.factors[i], x).interval()))
+        (0..self.problem.factors.len()).any(|i| excludes(self.enclose(self.problem.factors[i], x).interval()))
     }
 
     /// The derivative where the function is proved continuous and the derivative proved defined.
@@ -154,12 +183,12 @@ impl Search {
         if value.decoration() < Decoration::Dac {
             return None;
         }
-        let slope = self.enclose(self.slope, x);
+        let slope = self.enclose(self.problem.slope, x);
         (slope.decoration() >= Decoration::Def).then_some(slope.interval())
     }
 
     fn examine(&mut self, x: Interval) -> Finding {
-        let value = self.enclose(self.f, x);
+        let value = self.enclose(self.problem.f, x);
         if self.refuted(x, value.interval()) {
             return Finding::Refuted;
         }
@@ -191,7 +220,7 @@ impl Search {
     /// What a Newton step leaves of an interval on which the function has the given slopes; `None` if there is no zero.
     fn newton(&mut self, x: Interval, slope: Interval) -> Option<Interval> {
         let middle = x.mid();
-        let value = self.enclose(self.f, Interval::point(middle)).interval();
+        let value = self.enclose(self.problem.f, Interval::point(middle)).interval();
         // Mean value theorem: 0 = f(root) is in f(middle) + slope (root - middle).
         let step = if slope.contains(0.0) {
             let values = value + slope * (x - Interval::point(middle));
@@ -204,9 +233,9 @@ impl Search {
     }
 
     /// Newton steps on an interval that holds exactly one zero, while they help.
-    fn contract(&mut self, mut x: Interval) -> Interval {
+    pub(super) fn contract(&mut self, mut x: Interval) -> Interval {
         for _ in 0..MAX_STEPS {
-            let value = self.enclose(self.f, x);
+            let value = self.enclose(self.problem.f, x);
             let Some(slope) = self.slope(x, value).filter(|slope| !slope.contains(0.0)) else { break };
             match self.newton(x, slope) {
                 Some(narrower) if narrower.width() < x.width() => x = narrower,
@@ -252,7 +281,7 @@ impl Search {
         let Some(around) = Interval::new(lo, hi).filter(|around| around.is_bounded()) else {
             return roots.unknown.push(x);
         };
-        let value = self.enclose(self.f, around);
+        let value = self.enclose(self.problem.f, around);
         if value.decoration() >= Decoration::Dac
             && let (Some(left), Some(right)) = (self.sign(around.lo()), self.sign(around.hi()))
             && left * right < 0
@@ -299,7 +328,7 @@ impl Search {
         let hull = a.bracket.hull(b.bracket);
         let regions = a.alone.into_iter().chain(b.alone).fold(hull, Interval::hull);
         for (region, bracket) in [(regions, a.bracket.intersect(b.bracket)), (hull, a.bracket.intersect(b.bracket))] {
-            let value = self.enclose(self.f, region);
+            let value = self.enclose(self.problem.f, region);
             if region.is_singleton() || self.slope(region, value).is_some_and(|slope| !slope.contains(0.0)) {
                 let alone = if region.is_singleton() { a.alone.or(b.alone) } else { Some(region) };
                 return Root { bracket, alone };
@@ -334,170 +363,15 @@ impl PartialEq for Open {
 
 impl Eq for Open {}
 
-/// What the width of a part of the search interval is measured by: that interval, or the part's own numbers.
-fn scale(x: Interval, range: Interval) -> f64 {
-    range.width().min(x.mag().max(1.0))
-}
-
 /// Where to cut an interval; `None` if it is as small as is worth it.
-fn split(x: Interval, range: Interval) -> Option<f64> {
-    if x.is_bounded() && x.width() <= (RESOLUTION * scale(x, range)).max(f64::MIN_POSITIVE) {
+fn split(x: Interval, range: Interval, resolution: f64) -> Option<f64> {
+    if is_small(x, range, resolution) {
         return None;
     }
     simplest(x).filter(|&at| at > x.lo() && at < x.hi())
 }
 
-/// Intervals in order, with those that touch made one.
-fn merged(mut intervals: Vec<Interval>) -> Vec<Interval> {
-    intervals.sort_by(|a, b| a.lo().total_cmp(&b.lo()));
-    let mut merged: Vec<Interval> = Vec::new();
-    for x in intervals {
-        match merged.last_mut() {
-            Some(last) if !last.disjoint(x) => *last = last.hull(x),
-            _ => merged.push(x),
-        }
-    }
-    merged
-}
-
-/// Values that are 0 wherever `root` is 0: of a quotient the dividend, of a power the base, and so on inward; a tangent
-/// gives its sine. They have no poles where the root has one.
-fn factors(graph: &mut Graph, root: Value) -> Vec<Value> {
-    let mut found = Vec::new();
-    let mut value = root;
-    loop {
-        let node = *graph.node(value);
-        value = match node.op {
-            Op::Div | Op::Neg | Op::Sqr | Op::Sqrt | Op::Cbrt | Op::Abs | Op::Asin | Op::Atan | Op::Sinh | Op::Tanh => {
-                node.operands()[0]
-            }
-            Op::PowInt(n) if n > 0 => node.operands()[0],
-            Op::PowRatio(p, _) if p > 0 => node.operands()[0],
-            Op::Tan => {
-                let sine = graph.push(Op::Sin, node.operands());
-                found.push(sine);
-                return found;
-            }
-            _ => return found,
-        };
-        found.push(value);
-    }
-}
-
-/// A number in the middle half of an interval: 0, or the one divisible by the largest power of two.
-fn simplest(x: Interval) -> Option<f64> {
-    let (lo, hi) = match (x.lo() == f64::NEG_INFINITY, x.hi() == f64::INFINITY) {
-        (true, true) => return Some(0.0),
-        (false, true) => return Some(if x.lo() < 1.0 { 1.0 } else { 2.0 * x.lo() }).filter(|at| at.is_finite()),
-        (true, false) => return Some(if x.hi() > -1.0 { -1.0 } else { 2.0 * x.hi() }).filter(|at| at.is_finite()),
-        (false, false) => {
-            let quarter = x.hi() / 4.0 - x.lo() / 4.0;
-            (x.lo() + quarter, x.hi() - quarter)
-        }
-    };
-    if lo <= 0.0 && hi >= 0.0 {
-        return Some(0.0);
-    }
-    if lo > hi {
-        return None;
-    }
-    // The largest power of two that does not exceed the width has a multiple inside, unless rounding is in the way.
-    let exponent = (hi - lo).max(f64::MIN_POSITIVE).log2().floor() as i32 + 1;
-    let multiple = |exponent: i32| {
-        let unit = 2f64.powi(exponent);
-        let number = (lo / unit).ceil() * unit;
-        (unit > 0.0 && number >= lo && number <= hi).then_some(number)
-    };
-    let larger = (exponent..exponent + 64).rev().find_map(multiple);
-    larger.or_else(|| multiple(exponent - 1)).or_else(|| multiple(exponent - 2)).or(Some(x.mid()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::session::expression::Bindings;
-    use crate::session::expression::Reading;
-    use crate::session::expression::Snippet;
-    use crate::session::expression::Workspace;
-
-    fn roots(text: &str, lo: f64, hi: f64) -> Roots {
-        let workspace = Workspace::default();
-        let expression = workspace.expression(&Snippet::whole("", text), &["x"], Reading::Zero).unwrap();
-        let boxes = expression.boxes(&Bindings::new());
-        Search::new(&expression.graph, expression.root, &boxes, 0).run(Interval::new(lo, hi).unwrap())
-    }
-
-    /// Every given zero is in a proved bracket of its own, which is narrow, alone, and nothing is unknown.
-    fn complete(text: &str, lo: f64, hi: f64, zeros: &[f64]) {
-        let found = roots(text, lo, hi);
-        assert!(found.unknown.is_empty() && !found.exhausted, "{text}: {found:?}");
-        assert_eq!(found.proved.len(), zeros.len(), "{text}: {found:?}");
-        for (root, zero) in found.proved.iter().zip(zeros) {
-            let near = Interval::new(zero - 1e-15 * zero.abs(), zero + 1e-15 * zero.abs()).unwrap();
-            assert!(!root.bracket.disjoint(near), "{text}: {root:?} is not {zero}");
-            assert!(root.bracket.width() <= 1e-14 * zero.abs().max(1e-300), "{text}: {root:?}");
-            assert!(root.alone.is_some_and(|alone| alone.contains_interval(root.bracket)), "{text}: {root:?}");
-        }
-    }
-
-    #[test]
-    fn simple_zeros_are_all_proved_and_narrow() {
-        use std::f64::consts::PI;
-        complete("x^2 - 2", 0.0, 2.0, &[2f64.sqrt()]);
-        complete("x^2 = 2", -10.0, 10.0, &[-(2f64.sqrt()), 2f64.sqrt()]);
-        complete("sin(x)", 1.0, 20.0, &[PI, 2.0 * PI, 3.0 * PI, 4.0 * PI, 5.0 * PI, 6.0 * PI]);
-        complete("cos(x) = x", -100.0, 100.0, &[0.739_085_133_215_160_6]);
-        complete("exp(x) - 3", f64::NEG_INFINITY, f64::INFINITY, &[3f64.ln()]);
-        complete("x^3 - x", -2.0, 2.0, &[-1.0, 0.0, 1.0]);
-        complete("(x - 1)(x - 2)(x - 3)", 0.5, 3.5, &[1.0, 2.0, 3.0]);
-        complete("ln(x)", 0.0, 10.0, &[1.0]);
-        complete("x^2 + 1", -10.0, 10.0, &[]);
-    }
-
-    #[test]
-    fn zeros_at_the_ends_count() {
-        complete("x^2 - 4", 2.0, 3.0, &[2.0]);
-        complete("x - 1", 0.0, 1.0, &[1.0]);
-    }
-
-    #[test]
-    fn poles_are_never_roots() {
-        complete("1/x", -1.0, 2.0, &[]);
-        complete("tan(x)", 1.0, 4.0, &[std::f64::consts::PI]);
-        complete("1/x - 2", -1.0, 1.0, &[0.5]);
-        let beside = roots("tan(x) + 1", 1.0, 3.0);
-        assert_eq!(beside.proved.len(), 1, "{beside:?}");
-        assert!(beside.proved[0].bracket.contains(0.75 * std::f64::consts::PI), "{beside:?}");
-        assert!(beside.unknown.len() == 1 && beside.unknown[0].width() < 1e-10, "{beside:?}");
-        let jump = roots("floor(x) - 1/2", 0.2, 1.7);
-        assert!(jump.proved.is_empty() && jump.unknown.iter().any(|x| x.contains(1.0)), "{jump:?}");
-    }
-
-    #[test]
-    fn touching_zeros_are_unknown_but_where_they_are_exact() {
-        let touching = roots("x^2 - 2 sqrt(2) x + 2", 0.0, 3.0);
-        assert!(touching.proved.is_empty(), "{touching:?}");
-        assert!(touching.unknown.iter().any(|x| x.contains(2f64.sqrt())), "{touching:?}");
-        assert!(touching.unknown.iter().all(|x| (x.mid() - 2f64.sqrt()).abs() < 1e-5), "{touching:?}");
-        let exact = roots("(x - 1)^2", 0.0, 3.0);
-        assert!(exact.proved.iter().all(|root| root.bracket == Interval::ONE), "{exact:?}");
-        assert_eq!(exact.proved.len(), 1, "{exact:?}");
-    }
-
-    #[test]
-    fn triple_zeros_are_proved_without_being_alone() {
-        let triple = roots("(x - 1/3)^3", 0.0, 1.0);
-        assert_eq!(triple.proved.len(), 1, "{triple:?}");
-        assert!(triple.proved[0].bracket.contains(1.0 / 3.0) && triple.proved[0].alone.is_none(), "{triple:?}");
-    }
-
-    #[test]
-    fn endless_zeros_end() {
-        let dense = roots("sin(1/x)", 0.0, 1.0);
-        assert!(dense.exhausted || !dense.unknown.is_empty());
-        assert!(dense.proved.iter().any(|root| root.bracket.contains(std::f64::consts::FRAC_1_PI)));
-        assert!(dense.proved.iter().all(|root| root.bracket.lo() > 0.0));
-        let zero = roots("x - x", -1.0, 1.0);
-        assert!(!zero.unknown.is_empty() && zero.proved.iter().all(|root| root.alone.is_none()), "{zero:?}");
-    }
+/// A coordinate of a ray; what is no number may be any.
+pub fn number(x: f64) -> Interval {
+    if x.is_finite() { Interval::point(x) } else { Interval::ENTIRE }
 }
