@@ -29,13 +29,14 @@ pub struct Limits {
     pub nodes: usize,
     /// Operations on vectors in one kernel.
     pub operations: usize,
-    /// From the text to the machine code of one kernel. Looked at every few microseconds, but not within the code
-    /// generator, which takes up to 3 us for each of [`Limits::operations`].
+    /// Of one step: reading a source, or making one kernel; a [`Budget`] that goes through several counts them together.
+    /// Looked at every few microseconds, but not within the code generator, which takes up to 3 us for each of
+    /// [`Limits::operations`].
     pub time: Duration,
 }
 
 impl Default for Limits {
-    /// 1 MiB of text, a million steps, 250 000 nodes, a minute.
+    /// 1 MiB of text, a million steps, 250 000 nodes, a minute. What is refused takes less than 256 MB.
     fn default() -> Self {
         Self {
             source_bytes: 1 << 20,
@@ -56,6 +57,9 @@ impl Limits {
     }
 
     /// For formulas from strangers: 64 KiB of text, no files but the standard library, 20 000 nodes, half a second.
+    ///
+    /// Reading a text and making kernels of it takes less than a second of one processor and 50 MB then, whatever the text
+    /// is: `tests/hostile.rs` measures it on a hundred texts that try.
     pub fn untrusted() -> Self {
         Self {
             source_bytes: 64 << 10,
