@@ -8,9 +8,12 @@
 //! - `S_columns`: the same arrays transposed, `boxes[variables][2][count]` and so on;
 //! - `S_packets`: the layout of `kernel::Kernel::run`.
 //!
-//! Each asks for the level of the processor, puts its arguments into a record, and calls a body with that record in the
-//! kernel's rounding mode ([`stub`]); the body moves rows through packets on the stack and calls the kernel ([`body`]).
+//! Each asks for the level of the processor (`entry`), puts its arguments into a record, and calls a body with that record in
+//! the kernel's rounding mode (`stub`); the body moves rows through packets on the stack and calls the kernel (`body`).
 //! What is exported allocates nothing, keeps no state but the level found, and may run on any number of threads.
+//!
+//! The caller's control word and its flags are as before when a function returns, and no result depends on them. NaN is one
+//! value here: its sign and payload differ between processors.
 
 mod body;
 mod entry;
