@@ -59,6 +59,8 @@ pub trait Real: Copy + Default + PartialOrd + Send + Sync + std::fmt::Debug + 's
     fn down(value: f64) -> Self;
     fn up(value: f64) -> Self;
     fn to_f64(self) -> f64;
+    /// The number with the other sign.
+    fn negated(self) -> Self;
 }
 
 impl Real for f32 {
@@ -86,6 +88,9 @@ impl Real for f32 {
     fn to_f64(self) -> f64 {
         self.into()
     }
+    fn negated(self) -> f32 {
+        -self
+    }
 }
 
 impl Real for f64 {
@@ -111,6 +116,9 @@ impl Real for f64 {
     }
     fn to_f64(self) -> f64 {
         self
+    }
+    fn negated(self) -> f64 {
+        -self
     }
 }
 

@@ -9,7 +9,7 @@
 //!
 //! let program = Program::parse("fn f(x, y) = (x^2 + y - 11)^2 + (x + y^2 - 7)^2")?;
 //! let kernel = program.function("f")?.intervals(&Options::default())?;
-//! let unit = Interval::new(-1.0, 1.0).expect("the ends are in order");
+//! let unit = Interval::try_from(-1.0..=1.0)?;
 //! let bound = kernel.enclose(&[unit, unit])?;
 //! assert!(bound.lo() > 89.0 && bound.hi() < 226.0);
 //! assert!(bound.is_positive());     // proved: the function has no zero in this box
@@ -64,14 +64,13 @@
 //! use imp::{Interval, Options, Program};
 //!
 //! let program = Program::parse("fn f(u) = 1/(u - 1) \n fn g(u) = u^3 - u - 1")?;
-//! let interval = |lo, hi| Interval::new(lo, hi).expect("the ends are in order");
 //! let f = program.function("f")?.intervals(&Options::default())?;
 //! let g = program.function("g")?.intervals(&Options::default())?;
 //! for (kernel, has_root) in [(f, false), (g, true)] {
 //!     let below = kernel.enclose(&[Interval::point(0.5)])?;
 //!     let above = kernel.enclose(&[Interval::point(1.5)])?;
 //!     assert!(below.is_negative() && above.is_positive());
-//!     assert_eq!(kernel.enclose(&[interval(0.5, 1.5)])?.is_continuous(), has_root);
+//!     assert_eq!(kernel.enclose(&[Interval::try_from(0.5..=1.5)?])?.is_continuous(), has_root);
 //! }
 //! # Ok::<(), imp::Error>(())
 //! ```
@@ -110,7 +109,7 @@
 //!
 //! let program = Program::parse("param r = 1 in [0, 10] \n fn f(x) = x^2 - r^2")?;
 //! let one = program.function("f")?.intervals(&Options::default())?;
-//! let measured = one.clone().with("r", Interval::new(1.9, 2.1).expect("the ends are in order"))?;
+//! let measured = one.clone().with("r", Interval::try_from(1.9..=2.1)?)?;
 //! assert_eq!(one.enclose(&[Interval::point(3.0)])?.interval, Interval::point(8.0));
 //! assert!(measured.enclose(&[Interval::point(3.0)])?.interval.width() > 0.7);
 //! assert!(matches!(one.with("r", Interval::point(11.0)), Err(Error::OutOfRange { .. })));
@@ -140,21 +139,44 @@
 //! variables makes code shorter and bounds narrower; affine forms remember that a variable occurs twice:
 //!
 //! ```
-//! use imp::{Interval, IntervalKernel, Options, Program};
+//! use imp::{Function, Interval, IntervalKernel, Options};
 //!
-//! let program = Program::parse("fn f(x) = x(10 - x)")?;
-//! let f = program.function("f")?;
-//! let at = [Interval::new(4.0, 6.0).expect("the ends are in order")];
+//! let f = Function::parse("x(10 - x)", &["x"])?;
+//! let at = [Interval::try_from(4.0..=6.0)?];
 //! let natural = f.intervals(&Options::default())?.enclose(&at)?;
 //! let affine = f.intervals(&Options { affine: true, ..Options::default() })?.enclose(&at)?;
-//! assert_eq!(natural.interval, Interval::new(16.0, 36.0).expect("the ends are in order"));
-//! assert_eq!(affine.interval, Interval::new(23.0, 25.0).expect("the ends are in order"));
+//! assert_eq!(natural.interval, Interval::try_from(16.0..=36.0)?);
+//! assert!(affine.interval.width() < 2.1 && affine.interval.contains(25.0));
 //! let single: IntervalKernel<f32> = f.interval_kernel(&Options::default())?;
 //! assert_eq!(single.enclose(&at)?.interval, natural.interval);
 //! # Ok::<(), imp::Error>(())
 //! ```
 //!
 //! ## Roots
+//!
+//! [`Function::roots`] finds all zeros in an interval. Each bracket is proved to hold one, and nothing else outside of what is
+//! said to be unknown. [`Function::root_finder`] compiles the search once for many values of the other variables and parameters,
+//! [`Function::ray_finder`] for many lines through space:
+//!
+//! ```
+//! use glam::DVec3;
+//! use imp::{Interval, Program};
+//!
+//! let program = Program::parse("fn kepler(e, m, u) = u - e sin(u) - m\n surface ball: x^2 + y^2 + z^2 = 1")?;
+//! let mut orbit = program.function("kepler")?.root_finder("u")?;
+//! orbit.set("e", Interval::point(0.5))?;
+//! for m in [0.5, 1.0, 1.5] {
+//!     orbit.set("m", Interval::point(m))?;
+//!     let found = orbit.roots(Interval::try_from(0.0..=7.0)?);
+//!     assert!(found.is_complete() && found.proved.len() == 1);
+//!     assert!(found.proved[0].bracket.width() < 1e-14);
+//! }
+//! let rays = program.function("ball")?.ray_finder()?;
+//! let (eye, towards) = (DVec3::new(0.0, 0.0, 5.0), DVec3::NEG_Z);
+//! let hits = rays.roots(&eye.to_array(), &towards.to_array(), Interval::try_from(0.0..=100.0)?)?;
+//! assert!(hits.first().expect("the ray meets the ball").bracket.contains(4.0));
+//! # Ok::<(), imp::Error>(())
+//! ```
 //!
 //! ## Pictures and arrangements
 //!
@@ -175,7 +197,7 @@
 //!
 //! let circles = Program::parse("x^2 + y^2 = 1 \n (x - 1)^2 + y^2 = 1 \n domain [-3, 3]^2")?;
 //! let arrangement = circles.arrange(&Default::default())?;
-//! let counts = imp::arrange::check(&arrangement).map_err(imp::diagnostic::Diagnostic::from)?;
+//! let counts = imp::arrange::check::check(&arrangement).map_err(imp::diagnostic::Diagnostic::from)?;
 //! assert!(counts.proved && counts.vertices.crossing == 2 && counts.faces == 4);
 //! # Ok::<(), imp::Error>(())
 //! ```
@@ -229,8 +251,9 @@
 //!
 //! let tenth = Interval::from_rational(&"1/10".parse().expect("a rational number"));
 //! assert!(tenth.lo() < tenth.hi());
-//! let x = Interval::new(-1.0, 2.0).expect("the ends are in order");
-//! assert_eq!(x.sqr(), Interval::new(0.0, 4.0).expect("the ends are in order"));
+//! let x = Interval::try_from(-1.0..=2.0)?;
+//! assert_eq!(x.sqr(), Interval::try_from(0.0..=4.0)?);
+//! # Ok::<(), imp::Error>(())
 //! ```
 //!
 //! # Layers
@@ -297,5 +320,7 @@ pub use library::Loader;
 pub use library::Options;
 pub use library::PointKernel;
 pub use library::Program;
+pub use library::RayFinder;
+pub use library::RootFinder;
 pub use library::Verdict;
 pub use limits::Limits;

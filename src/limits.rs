@@ -35,14 +35,14 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 4 MiB of text, a million steps and nodes, a minute.
+    /// 1 MiB of text, a million steps, 250 000 nodes, a minute.
     fn default() -> Self {
         Self {
-            source_bytes: 4 << 20,
+            source_bytes: 1 << 20,
             files: 1000,
             steps: 1_000_000,
-            nodes: 1_000_000,
-            operations: 400_000,
+            nodes: 250_000,
+            operations: 4_000_000,
             time: Duration::from_secs(60),
         }
     }
@@ -62,7 +62,7 @@ impl Limits {
             files: 0,
             steps: 100_000,
             nodes: 20_000,
-            operations: 60_000,
+            operations: 100_000,
             time: Duration::from_millis(500),
         }
     }

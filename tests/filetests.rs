@@ -8,7 +8,7 @@ use std::panic::AssertUnwindSafe;
 use std::panic::catch_unwind;
 use std::path::Path;
 
-use imp::derive::derivative;
+use imp::derive::derivative_within;
 use imp::diagnostic::FileId;
 use imp::diagnostic::SourceMap;
 use imp::diagnostic::render;
@@ -159,7 +159,7 @@ fn resolved(input: &str) -> String {
     let main = parts.next().unwrap();
     let files = parts.map(|part| part.split_once('\n').unwrap()).map(|(name, text)| (name.to_owned(), text.to_owned()));
     let importer = Files(files.collect());
-    let differentiate = |graph: &mut Graph, f, by| derivative(graph, f, by);
+    let differentiate = |graph: &mut Graph, f, by, budget: &Budget| derivative_within(graph, f, by, budget);
     let budget = Budget::new(&Limits::default());
     let context =
         Context { importer: &importer, differentiate: &differentiate, overrides: &overrides, budget: &budget };

@@ -4,7 +4,9 @@
 use std::sync::Arc;
 
 use imp::codegen::Compiler;
-use imp::codegen::NarrowCompiler;
+use imp::codegen::CompilerFor;
+use imp::codegen::Registers;
+use imp::codegen::Width;
 use imp::derive::Arithmetic;
 use imp::derive::Output;
 use imp::derive::Rounding;
@@ -171,14 +173,13 @@ fn widened_kernels_equal_narrow_ones() {
     for (graph, root) in formulas {
         for (domain, arithmetic) in [(None, Arithmetic::Interval), (Some(3.0), Arithmetic::Affine)] {
             let spec = spec(graph.clone(), root, domain, arithmetic);
-            same_bits(&*Compiler.compile_f32(&spec).unwrap(), &*NarrowCompiler.compile_f32(&spec).unwrap(), |x| {
-                x.to_bits().into()
-            });
-            same_bits(
-                &*Compiler.compile_f64(&spec).unwrap(),
-                &*NarrowCompiler.compile_f64(&spec).unwrap(),
-                f64::to_bits,
-            );
+            let narrow = CompilerFor(Width::Narrow);
+            for width in [Width::Best, Width::Wide(Registers::Ymm), Width::Wide(Registers::Zmm)] {
+                let wide = CompilerFor(width);
+                let single = |x: f32| x.to_bits().into();
+                same_bits(&*wide.compile_f32(&spec).unwrap(), &*narrow.compile_f32(&spec).unwrap(), single);
+                same_bits(&*wide.compile_f64(&spec).unwrap(), &*narrow.compile_f64(&spec).unwrap(), f64::to_bits);
+            }
         }
     }
 }

@@ -183,6 +183,30 @@ fn kernels_go_anywhere() {
 }
 
 #[test]
+fn zeros_are_found() {
+    let program = Program::parse("param a = 1 in [1/2, 2]\nfn f(u, v) = u^2 - a v\nsurface s: x^2 + y^2 = z").unwrap();
+    let f = program.function("f").unwrap();
+    let mut finder = f.root_finder("u").unwrap();
+    finder.set("v", Interval::point(2.0)).unwrap();
+    let brackets = |found: imp::roots::Roots| -> Vec<Interval> {
+        assert!(found.is_complete());
+        found.proved.iter().map(|root| root.bracket).collect()
+    };
+    let found = brackets(finder.roots(Interval::ENTIRE));
+    assert!(found.len() == 2 && found[1].contains(f64::sqrt(2.0)) && found[1].width() < 1e-15);
+    finder.set("a", Interval::point(0.5)).unwrap();
+    assert_eq!(brackets(finder.roots(Interval::ENTIRE)), [Interval::point(-1.0), Interval::point(1.0)]);
+    assert!(matches!(finder.set("a", Interval::point(3.0)), Err(Error::OutOfRange { .. })));
+    assert!(finder.set("u", Interval::ZERO).is_err() && finder.set("w", Interval::ZERO).is_err());
+    assert!(matches!(f.root_finder("w"), Err(Error::UnknownVariable { .. })));
+    assert!(matches!(f.roots(Interval::ENTIRE), Err(Error::Length { .. })));
+    let rays = program.function("s").unwrap().ray_finder().unwrap();
+    let found = rays.roots(&[0.0, 0.0, 4.0], &[1.0, 0.0, 0.0], interval(0.0, 10.0)).unwrap();
+    assert_eq!(brackets(found), [Interval::point(2.0)]);
+    assert!(matches!(rays.roots(&[0.0; 2], &[1.0; 3], Interval::ENTIRE), Err(Error::Length { .. })));
+}
+
+#[test]
 fn results_can_be_stored() {
     let program = Program::parse("fn f(u) = 1/u").unwrap();
     let kernel = program.function("f").unwrap().intervals(&Options::default()).unwrap();

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-use imp::derive::derivative;
+use imp::derive::derivative_within;
 use imp::diagnostic::SourceMap;
 use imp::diagnostic::render;
 use imp::graph::enclose;
@@ -25,7 +25,7 @@ use imp::syntax::ast::Module;
 const EMBEDDED: &dyn Importer = &Embedded;
 
 fn context<'a>(importer: &'a dyn Importer, budget: &'a Budget) -> Context<'a> {
-    Context { importer, differentiate: &derivative, overrides: &[], budget }
+    Context { importer, differentiate: &derivative_within, overrides: &[], budget }
 }
 
 fn budget() -> Budget {

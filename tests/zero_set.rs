@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 
-use imp::derive::derivative;
+use imp::derive::derivative_within;
 use imp::diagnostic::SourceMap;
 use imp::diagnostic::render;
 use imp::graph::Graph;
@@ -27,7 +27,7 @@ fn scene(text: &str) -> Scene {
     let mut sources = SourceMap::default();
     let file = sources.add("scene", text);
     let budget = Budget::new(&Limits::default());
-    let context = Context { importer: &Embedded, differentiate: &derivative, overrides: &[], budget: &budget };
+    let context = Context { importer: &Embedded, differentiate: &derivative_within, overrides: &[], budget: &budget };
     let (scene, diagnostics) = program::resolve(&mut sources, file, syntax::parse(file, text), &context);
     match scene {
         Some(scene) if diagnostics.is_empty() => scene,

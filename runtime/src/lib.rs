@@ -3,7 +3,7 @@
 //!
 //! ```toml
 //! [dependencies]
-//! imp = { package = "imp-runtime", version = "0.1" }
+//! imp-runtime = "0.1"
 //!
 //! [build-dependencies]
 //! imp = "0.1"
@@ -15,14 +15,18 @@
 //!     imp::build(["kernels.imp"])
 //! }
 //!
-//! // main.rs
-//! imp::include_kernels!();
+//! // main.rs, where kernels.imp has a function f(x, y)
+//! use imp_runtime::Interval;
+//!
+//! imp_runtime::include_kernels!();
 //!
 //! fn main() {
-//!     let bound = kernels::f::interval([imp::Interval::new(0.0, 1.0), imp::Interval::new(0.0, 1.0)]);
+//!     let bound = kernels::f::interval([Interval::new(0.0, 1.0), Interval::point(2.0)]);
 //!     println!("{bound}");
 //! }
 //! ```
+//!
+//! A program that has the whole of Imp among its dependencies finds the macro there, too: `imp::include_kernels!()`.
 #![no_std]
 #![warn(missing_docs)]
 

@@ -48,6 +48,8 @@ impl Default for Selection {
 /// A file's functions, ready to be compiled for any target.
 #[derive(Debug)]
 pub struct Export {
+    /// What the file is called as a module.
+    name: String,
     interface: Interface,
     routines: Vec<Routine>,
     /// What was left out or renamed; their places are in the program's sources.
@@ -55,20 +57,26 @@ pub struct Export {
 }
 
 impl Export {
-    /// Selects functions of a program; `file` gives the module its name.
+    /// Selects functions of a program; `file` gives the module its name. Symbols begin with `scope`, which may be empty, and
+    /// that name.
     ///
     /// # Errors
-    /// If nothing is left, a function is not there or has a mistake, or two names become one.
-    pub fn new(program: &Program, file: &Path, selection: &Selection) -> Result<Self, Error> {
+    /// If no function or no kernel is left, a function is not there or has a mistake, or two names become one.
+    pub fn new(program: &Program, file: &Path, scope: &str, selection: &Selection) -> Result<Self, Error> {
         let mut notes = Vec::new();
         let functions = select(program, &selection.functions, &mut notes)?;
         let mut kernels = selection.kernels.clone();
         kernels.sort();
         kernels.dedup();
+        if kernels.is_empty() {
+            return Err(Diagnostic::error(code::BAD_OPTION, "no kernel is asked for").into());
+        }
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let name = names::identifier(&stem);
         let exported = |function: &Function| exported(program, function, selection.precision);
         let interface = Interface {
             file: file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            module: names::identifier(&file.file_stem().unwrap_or_default().to_string_lossy()),
+            module: if scope.is_empty() { name.clone() } else { names::identifier(&format!("{scope}_{name}")) },
             precision: selection.precision,
             kernels,
             functions: functions.iter().map(exported).collect(),
@@ -82,12 +90,12 @@ impl Export {
                 routines.push(routine(&interface, function, exported, kernel)?);
             }
         }
-        Ok(Self { interface, routines, notes })
+        Ok(Self { name, interface, routines, notes })
     }
 
-    /// The name that symbols begin with.
-    pub fn module(&self) -> &str {
-        &self.interface.module
+    /// What the file is called as a module.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// The bytes of an object.
@@ -114,9 +122,9 @@ impl Export {
         rust::file(&self.interface)
     }
 
-    /// The text of a Rust module with the name of this one, beside which there is a module `imp_types`.
+    /// The text of a Rust module with the name of the file, beside which there is a module `imp_types`.
     pub fn rust_module(&self) -> String {
-        rust::module(&self.interface)
+        rust::module(&self.name, &self.interface)
     }
 }
 
@@ -124,8 +132,8 @@ impl Export {
 ///
 /// # Errors
 /// As [`Export::object`].
-pub fn library(exports: &[Export], target: &Target) -> Result<Vec<u8>, Error> {
-    let object = |export: &Export| Ok((export.module().to_owned(), export.object(target)?));
+pub fn static_library(exports: &[Export], target: &Target) -> Result<Vec<u8>, Error> {
+    let object = |export: &Export| Ok((export.name.clone(), export.object(target)?));
     let objects: Vec<(String, Vec<u8>)> = exports.iter().map(object).collect::<Result<_, Error>>()?;
     Ok(archive(&objects)?)
 }

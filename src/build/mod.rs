@@ -9,9 +9,11 @@ mod names;
 mod rust;
 mod script;
 
+pub use crate::codegen::object::Level;
+pub use crate::derive::Precision;
 pub use export::Export;
 pub use export::Selection;
-pub use export::library;
+pub use export::static_library;
 pub use interface::Kernel;
 pub use script::Build;
 pub use script::all_levels;

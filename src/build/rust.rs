@@ -23,10 +23,10 @@ pub fn file(interface: &Interface) -> String {
     out
 }
 
-/// A module with the name of the interface, beside which there is a module `imp_types`.
-pub fn module(interface: &Interface) -> String {
+/// A module, beside which there is a module `imp_types`.
+pub fn module(name: &str, interface: &Interface) -> String {
     let mut out = format!("/// Kernels of `{}`.\n#[allow(clippy::all)]\n#[rustfmt::skip]\n", interface.file);
-    out += &format!("pub mod {} {{\nuse super::imp_types;\n\n", names::in_rust(&interface.module));
+    out += &format!("pub mod {} {{\nuse super::imp_types;\n\n", names::in_rust(name));
     out += &functions(interface);
     out += "}\n";
     out

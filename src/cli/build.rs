@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::build::Export;
 use crate::build::Selection;
 use crate::build::all_levels;
-use crate::build::library;
+use crate::build::static_library;
 use crate::cli::arguments::BuildArguments;
 use crate::cli::arguments::TargetArgument;
 use crate::cli::failure;
@@ -43,7 +43,7 @@ pub fn build(arguments: &BuildArguments) -> Result<(), Failure> {
         precision: arguments.precision.into(),
     };
     let program = Program::open(file)?;
-    let export = Export::new(&program, file, &selection)?;
+    let export = Export::new(&program, file, "", &selection)?;
     failure::print(program.sources(), &export.notes);
 
     let mut results: Vec<(&Path, Vec<u8>)> = Vec::new();
@@ -57,7 +57,7 @@ pub fn build(arguments: &BuildArguments) -> Result<(), Failure> {
         results.push((path, export.rust_file().into_bytes()));
     }
     if let Some(path) = archive {
-        results.push((path, library(std::slice::from_ref(&export), &target)?));
+        results.push((path, static_library(std::slice::from_ref(&export), &target)?));
     }
     results.iter().try_for_each(|(path, bytes)| files::write(path, bytes))
 }

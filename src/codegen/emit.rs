@@ -7,8 +7,10 @@
 use std::sync::OnceLock;
 
 use cranelift_codegen::Context;
+use cranelift_codegen::FinalizedRelocTarget;
 use cranelift_codegen::ir::AbiParam;
 use cranelift_codegen::ir::ConstantData;
+use cranelift_codegen::ir::ExternalName;
 use cranelift_codegen::ir::InstBuilder;
 use cranelift_codegen::ir::MemFlagsData;
 use cranelift_codegen::ir::Signature;
@@ -53,7 +55,7 @@ const MAX_OPERATIONS: usize = 400_000;
 
 /// Bytes of stack that a kernel may take, which runs on threads that it does not know: half of the stack of a thread that
 /// Rust starts.
-const MAX_FRAME: u32 = 1 << 20;
+pub const MAX_FRAME: u32 = 1 << 20;
 
 /// What code is made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,10 +108,14 @@ pub fn compile(program: &LaneProgram, isa: &OwnedTargetIsa, stride: usize) -> Re
         return Err(too_large(program));
     }
     let bytes = code.code_buffer().to_vec();
-    // Only labels within the function itself would name it.
-    let own = FuncId::from_u32(0);
-    let relocations = code.buffer.relocs().iter();
-    let relocations = relocations.map(|reloc| ModuleReloc::from_mach_reloc(reloc, &context.func, own)).collect();
+    let mut relocations = Vec::new();
+    for relocation in code.buffer.relocs() {
+        if !matches!(relocation.target, FinalizedRelocTarget::ExternalName(ExternalName::LibCall(_))) {
+            return Err(internal(&"a kernel refers to what is not in the C library"));
+        }
+        // The function's own number would matter to labels inside of it only.
+        relocations.push(ModuleReloc::from_mach_reloc(relocation, &context.func, FuncId::from_u32(0)));
+    }
     Ok(Code { bytes, relocations, frame })
 }
 

@@ -8,9 +8,21 @@ use num_rational::BigRational;
 use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
+use crate::limits::Limits;
 
 /// The derivative of `f` by the value `wrt` (an input), all other inputs held fixed. Forward mode: one pass.
 pub fn derivative(graph: &mut Graph, f: Value, wrt: Value) -> Value {
+    let budget = Budget::new(&Limits::unlimited());
+    derivative_within(graph, f, wrt, &budget).unwrap_or_else(|_| unreachable!("there is no limit"))
+}
+
+/// The same within limits of time and of nodes.
+///
+/// # Errors
+/// Which limit was exceeded; the graph is then good for nothing.
+pub fn derivative_within(graph: &mut Graph, f: Value, wrt: Value, budget: &Budget) -> Result<Value, Exceeded> {
     let needed = graph.reachable(&[f]);
     let zero = graph.int(0);
     let one = graph.int(1);
@@ -19,6 +31,8 @@ pub fn derivative(graph: &mut Graph, f: Value, wrt: Value) -> Value {
         if !needed[index] {
             continue;
         }
+        budget.tick()?;
+        budget.nodes(graph.len())?;
         let value = Value(index as u32);
         let operands = graph.node(value).operands().to_vec();
         slope[index] = if value == wrt {
@@ -30,12 +44,20 @@ pub fn derivative(graph: &mut Graph, f: Value, wrt: Value) -> Value {
             Rule { graph, zero }.slope(value, &operands, &slopes)
         };
     }
-    slope[f.index()]
+    Ok(slope[f.index()])
 }
 
 /// The partial derivatives of `f` by each of `wrt`.
 pub fn gradient(graph: &mut Graph, f: Value, wrt: &[Value]) -> Vec<Value> {
     wrt.iter().map(|&input| derivative(graph, f, input)).collect()
+}
+
+/// The same within limits of time and of nodes.
+///
+/// # Errors
+/// As [`derivative_within`].
+pub fn gradient_within(graph: &mut Graph, f: Value, wrt: &[Value], budget: &Budget) -> Result<Vec<Value>, Exceeded> {
+    wrt.iter().map(|&input| derivative_within(graph, f, input, budget)).collect()
 }
 
 /// Chain rule with the zeros left out, so that a formula's gradient has no dead terms.

@@ -29,6 +29,8 @@ use crate::graph::elementary_function;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
 
 /// Verdict bits, as `kernel::verdict` documents them to consumers.
 pub const POSITIVE: u64 = 1;
@@ -50,7 +52,12 @@ struct Form {
 }
 
 /// Lowers a spec with interval or affine arithmetic.
-pub fn lower(spec: &Spec, bounds: &[Decorated], precision: Precision) -> LaneProgram {
+pub fn lower(
+    spec: &Spec,
+    bounds: &[Decorated],
+    precision: Precision,
+    budget: &Budget,
+) -> Result<LaneProgram, Exceeded> {
     let magnitudes = magnitude::bounds(spec, bounds, precision);
     let roots: Vec<Value> = spec.outputs.iter().map(|output| output.value()).collect();
     let mut wanted = roots.clone();
@@ -67,6 +74,8 @@ pub fn lower(spec: &Spec, bounds: &[Decorated], precision: Precision) -> LanePro
         inside: Mask::True,
     };
     for (value, node) in spec.graph.iter().filter(|(v, _)| needed[v.index()]) {
+        budget.tick()?;
+        budget.operations(lowering.b.count())?;
         let form = lowering.form(value, node);
         lowering.forms[value.index()] = Some(form);
     }
@@ -74,7 +83,7 @@ pub fn lower(spec: &Spec, bounds: &[Decorated], precision: Precision) -> LanePro
     for output in &spec.outputs {
         lowering.output(*output, &mut outputs);
     }
-    lowering.b.finish(2 * spec.inputs.len(), 2 * spec.uniforms.len(), outputs)
+    Ok(lowering.b.finish(2 * spec.inputs.len(), 2 * spec.uniforms.len(), outputs))
 }
 
 /// The sums that only sums use. Affine arithmetic leaves their ends those of the natural extension: the last sum's form

@@ -242,6 +242,11 @@ impl Builder {
         self.precision
     }
 
+    /// Operations so far.
+    pub fn count(&self) -> usize {
+        self.ops.len()
+    }
+
     pub fn finish(self, input_slots: usize, uniform_slots: usize, outputs: Vec<Lane>) -> LaneProgram {
         LaneProgram { precision: self.precision, input_slots, uniform_slots, ops: self.ops, outputs }
             .without_dead_code()

@@ -14,11 +14,15 @@ mod magnitude;
 mod point;
 mod ray;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::graph::Graph;
 use crate::graph::Value;
 use crate::interval::Interval;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
+use crate::limits::Limits;
 use crate::passes::bounds;
 
 pub use choice::Choice;
@@ -29,7 +33,9 @@ pub use extension::Formula;
 pub use extension::Symbols;
 pub use extension::UnknownExtension;
 pub use gradient::derivative;
+pub use gradient::derivative_within;
 pub use gradient::gradient;
+pub use gradient::gradient_within;
 pub use gradient::power_ratio;
 pub use lanes::LaneProgram;
 pub use ray::DIRECTION;
@@ -114,15 +120,24 @@ pub struct Spec {
 impl Spec {
     /// The lane program of this order: bounds over the domain first, then the arithmetic asked for.
     pub fn lower(&self, precision: Precision) -> LaneProgram {
-        let promised = |name: &String| {
-            let promise = self.promises.iter().find(|(n, _)| n == name);
-            promise.map_or(Interval::ENTIRE, |&(_, range)| range)
-        };
+        let budget = Budget::new(&Limits::unlimited());
+        self.lower_within(precision, &budget).unwrap_or_else(|_| unreachable!("there is no limit"))
+    }
+
+    /// The same within limits of time and of operations; those that nothing needs in the end count too.
+    ///
+    /// # Errors
+    /// Which limit was exceeded.
+    pub fn lower_within(&self, precision: Precision, budget: &Budget) -> Result<LaneProgram, Exceeded> {
+        let promises: HashMap<&str, Interval> =
+            self.promises.iter().map(|(name, range)| (name.as_str(), *range)).collect();
+        let promised = |name: &String| promises.get(name.as_str()).copied().unwrap_or(Interval::ENTIRE);
         let inputs: Vec<Interval> = self.graph.variables().iter().map(promised).collect();
+        budget.time()?;
         let bounds = bounds(&self.graph, &inputs, &self.domain);
         match self.arithmetic {
-            Arithmetic::Point => point::lower(self, &bounds, precision),
-            Arithmetic::Interval | Arithmetic::Affine => interval::lower(self, &bounds, precision),
+            Arithmetic::Point => point::lower(self, &bounds, precision, budget),
+            Arithmetic::Interval | Arithmetic::Affine => interval::lower(self, &bounds, precision, budget),
         }
     }
 }

@@ -13,14 +13,23 @@ use crate::graph::Op;
 use crate::graph::Value;
 use crate::graph::elementary_function;
 use crate::interval::Decorated;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
 
 /// Lowers a spec with point arithmetic. Constants are the midpoints of their enclosures.
-pub fn lower(spec: &Spec, bounds: &[Decorated], precision: Precision) -> LaneProgram {
+pub fn lower(
+    spec: &Spec,
+    bounds: &[Decorated],
+    precision: Precision,
+    budget: &Budget,
+) -> Result<LaneProgram, Exceeded> {
     let roots: Vec<Value> = spec.outputs.iter().map(|output| output.value()).collect();
     let needed = spec.graph.reachable(&roots);
     let mut b = Builder::new(precision);
     let mut lanes: Vec<Option<Lane>> = vec![None; spec.graph.len()];
     for (value, node) in spec.graph.iter().filter(|(v, _)| needed[v.index()]) {
+        budget.tick()?;
+        budget.operations(b.count())?;
         let operands: Vec<Lane> =
             node.operands().iter().map(|v| lanes[v.index()].expect("operands are lowered first")).collect();
         let constant = node.op != Op::Entire && operands.iter().all(|&lane| b.as_number(lane).is_some());
@@ -39,7 +48,7 @@ pub fn lower(spec: &Spec, bounds: &[Decorated], precision: Precision) -> LanePro
             lanes[output.value().index()].expect("outputs are reachable")
         })
         .collect();
-    b.finish(spec.inputs.len(), spec.uniforms.len(), outputs)
+    Ok(b.finish(spec.inputs.len(), spec.uniforms.len(), outputs))
 }
 
 fn input(spec: &Spec, b: &mut Builder, name: &str) -> Lane {

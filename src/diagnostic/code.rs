@@ -78,7 +78,7 @@ codes! {
     DERIVATIVE_BY = "E0213";
     /// A list of the wrong length, or a component outside of it.
     LIST_LENGTH = "E0214";
-    /// A formula that grows without bound when its functions are inlined.
+    /// A formula that grows without bound when its functions and lists are written out.
     TOO_MUCH_EXPANSION = "E0215";
     /// A variable of an expression that has no value.
     NO_VALUE = "E0216";

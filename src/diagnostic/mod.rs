@@ -103,6 +103,19 @@ pub struct Label {
     pub text: String,
 }
 
+/// Past so many messages the rest is only counted: nobody reads more at once.
+pub const MAX_SHOWN: usize = 100;
+
+/// Leaves out all but the first [`MAX_SHOWN`] messages and says how many are missing, `dropped` ones included.
+pub fn shorten(found: &mut Vec<Diagnostic>, dropped: usize) {
+    // What says so already counts as one.
+    if found.len() > MAX_SHOWN + 1 {
+        let more = found.len() - MAX_SHOWN + dropped;
+        found.truncate(MAX_SHOWN);
+        found.push(Diagnostic::error(code::TOO_MANY_ERRORS, format!("{more} more errors are not shown")));
+    }
+}
+
 impl Diagnostic {
     pub fn error(code: &'static str, title: impl Into<String>) -> Self {
         Self { severity: Severity::Error, code, title: title.into(), labels: Vec::new(), help: Vec::new() }

@@ -1,6 +1,9 @@
-//! Intervals in files and messages of other programs. Where people read (JSON), the ends are texts, shortest decimals that read
+//! Intervals from ranges, and intervals in files and messages of other programs. Where people read (JSON), the ends are texts, shortest decimals that read
 //! back as the same `f64`, since JSON has no infinities: `{"lo": "-1", "hi": "inf"}`, and both are `"empty"` for the empty set.
 //! Elsewhere they are two numbers, both NaN for the empty set.
+
+use std::fmt;
+use std::ops::RangeInclusive;
 
 use serde::Deserialize;
 use serde::Deserializer;
@@ -10,6 +13,31 @@ use serde::de::Error;
 
 use super::Interval;
 use super::decimal;
+
+/// Ends that are NaN, not in order, or both the same infinity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoInterval {
+    pub lo: f64,
+    pub hi: f64,
+}
+
+impl fmt::Display for NoInterval {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "[{}, {}] is no interval", decimal(self.lo), decimal(self.hi))
+    }
+}
+
+impl std::error::Error for NoInterval {}
+
+/// All numbers of a range, as in `Interval::try_from(0.0..=1.0)?`.
+impl TryFrom<RangeInclusive<f64>> for Interval {
+    type Error = NoInterval;
+
+    fn try_from(range: RangeInclusive<f64>) -> Result<Self, NoInterval> {
+        let (lo, hi) = range.into_inner();
+        Interval::new(lo, hi).ok_or(NoInterval { lo, hi })
+    }
+}
 
 #[derive(Serialize, Deserialize)]
 struct Texts {
@@ -52,7 +80,7 @@ impl<'de> Deserialize<'de> for Interval {
             }
             (lo, hi)
         };
-        Interval::new(lo, hi).ok_or_else(|| D::Error::custom(format!("[{lo}, {hi}] is no interval")))
+        Interval::try_from(lo..=hi).map_err(D::Error::custom)
     }
 }
 

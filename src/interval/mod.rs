@@ -44,6 +44,7 @@ mod tests;
 pub use affine::{Affine, Form, FullAffine};
 pub use affine_terms::{Coefficients, Sparse};
 pub use decoration::{Decorated, Decoration};
+pub use exchange::NoInterval;
 pub use linear::Linear;
 pub use modal::Modal;
 pub use parse::LiteralError;

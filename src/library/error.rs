@@ -7,6 +7,7 @@ use crate::diagnostic::SourceMap;
 use crate::diagnostic::Span;
 use crate::diagnostic::render;
 use crate::interval::Interval;
+use crate::interval::NoInterval;
 use crate::session::expression::Messages;
 
 /// What can go wrong in a program that uses Imp. `Debug` shows the same report as `Display`, so that
@@ -24,6 +25,8 @@ pub enum Error {
     UnknownVariable { name: String, known: Vec<String> },
     /// A parameter outside of the range for which its kernels were compiled.
     OutOfRange { name: String, value: Interval, range: Interval },
+    /// Ends that make no interval.
+    NoInterval(NoInterval),
     /// An array of the wrong length.
     Length { what: &'static str, expected: usize, found: usize },
     /// What needs no source and has no place in one: threads, files, work that was stopped, faults of Imp itself.
@@ -94,6 +97,12 @@ impl From<Diagnostic> for Error {
     }
 }
 
+impl From<NoInterval> for Error {
+    fn from(error: NoInterval) -> Self {
+        Error::NoInterval(error)
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -104,6 +113,7 @@ impl fmt::Display for Error {
             Error::OutOfRange { name, value, range } => {
                 write!(f, "parameter `{name}` cannot be {value}: it was declared to lie in {range}")
             }
+            Error::NoInterval(error) => error.fmt(f),
             Error::Length { what, expected, found } => write!(f, "{what}: {expected} expected, {found} found"),
             Error::Other(diagnostic) => {
                 write!(f, "{} [{}]", diagnostic.title, diagnostic.code)?;

@@ -16,6 +16,7 @@ use crate::interval::Interval;
 use crate::library::Error;
 use crate::library::IntervalKernel;
 use crate::library::PointKernel;
+use crate::library::Program;
 use crate::library::kernel::Compile;
 use crate::limits::Budget;
 use crate::limits::Limits;
@@ -59,6 +60,12 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Adds what is known of a variable.
+    pub fn on(mut self, variable: impl Into<String>, range: Interval) -> Self {
+        self.domain.push((variable.into(), range));
+        self
+    }
+
     /// The default with partial derivatives.
     pub fn with_gradient() -> Self {
         Self { gradient: true, ..Self::default() }
@@ -72,6 +79,14 @@ impl Function {
             n => (1..=n).map(|i| format!("{}[{i}]", resolved.name)).collect(),
         };
         Self { resolved: Arc::new(resolved), outputs: outputs.into(), limits }
+    }
+
+    /// A function of the given variables from an expression alone.
+    ///
+    /// # Errors
+    /// [`Error::Source`] with all of its mistakes.
+    pub fn parse(text: &str, variables: &[&str]) -> Result<Self, Error> {
+        Program::parse("")?.expression(text, variables)
     }
 
     /// As it is written in the source.
@@ -122,6 +137,11 @@ impl Function {
     /// Its values in [`Function::graph`].
     pub fn values(&self) -> &[Value] {
         &self.resolved.values
+    }
+
+    /// The variables' names in [`Function::graph`].
+    pub(super) fn inputs(&self) -> &[String] {
+        &self.resolved.inputs
     }
 
     /// Bounds over boxes, in double precision.
@@ -203,7 +223,8 @@ impl Function {
         for &value in &resolved.values {
             values.push(value);
             if options.gradient {
-                values.extend(derive::gradient(&mut graph, value, &variables));
+                let gradient = derive::gradient_within(&mut graph, value, &variables, budget);
+                values.extend(gradient.map_err(Diagnostic::from)?);
             }
         }
         for (index, value) in values.iter().enumerate() {

@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::derive::Rounding;
 use crate::interval::Interval;
 use crate::kernel::Kernel;
+use crate::kernel::Packet;
 use crate::kernel::Real;
 use crate::library::Enclosure;
 use crate::library::Error;
@@ -19,9 +20,9 @@ use crate::library::Function;
 use crate::library::Options;
 use crate::library::Verdict;
 use crate::library::kernel::Compile;
-use crate::library::kernel::LaneOf;
 use crate::library::kernel::Shared;
 use crate::library::kernel::check;
+use crate::library::kernel::parameter;
 use crate::library::kernel::rows;
 
 /// Rows that one task of a parallel call computes.
@@ -44,7 +45,7 @@ impl<T: Real> IntervalKernel<T> {
         T: Compile,
     {
         let spec = function.box_spec(options)?;
-        let code = T::compile(&spec)?;
+        let code = T::compile(&spec, &function.budget())?;
         let uniforms = function.parameters().iter().flat_map(|parameter| ends::<T>(parameter.value)).collect();
         let outputs = function.outputs_of(options).into();
         let shared = Shared { code, uniforms, function: function.clone(), outputs };
@@ -66,7 +67,7 @@ impl<T: Real> IntervalKernel<T> {
     /// # Errors
     /// If there is no such parameter, or the value lies outside of its range, for which the code was made.
     pub fn set(&mut self, name: &str, value: Interval) -> Result<(), Error> {
-        let place = self.shared.parameter(name, value)?;
+        let place = parameter(&self.shared.function, name, value)?;
         self.shared.uniforms[2 * place..2 * place + 2].copy_from_slice(&ends::<T>(value));
         Ok(())
     }
@@ -133,25 +134,38 @@ impl<T: Real> IntervalKernel<T> {
         }
         let width = self.outputs().len();
         enclosures.resize(width, count);
-        let (nan, negated) = (T::nearest(f64::NAN), |x: T| T::nearest(-x.to_f64()));
+        let nan = T::nearest(f64::NAN);
         self.shared.run(
             count,
-            |row, lane| {
-                for (variable, [lo, hi]) in boxes.iter().enumerate() {
-                    let (lo, hi) = if lo[row] <= hi[row] { (negated(lo[row]), hi[row]) } else { (nan, nan) };
-                    lane.set(2 * variable, lo);
-                    lane.set(2 * variable + 1, hi);
+            |rows, packets| {
+                for ([lo, hi], slots) in boxes.iter().zip(packets.chunks_exact_mut(2)) {
+                    let [lower, upper] = slots else { unreachable!("two slots a variable") };
+                    let ends = lo[rows.clone()].iter().zip(&hi[rows.clone()]);
+                    for ((lo, hi), (lower, upper)) in ends.zip(lower.lanes_mut().iter_mut().zip(upper.lanes_mut())) {
+                        (*lower, *upper) = if lo <= hi { (lo.negated(), *hi) } else { (nan, nan) };
+                    }
                 }
             },
-            |row, lane| {
-                for output in 0..width {
-                    enclosures.lo[output][row] = negated(lane.get(3 * output));
-                    enclosures.hi[output][row] = lane.get(3 * output + 1);
-                    enclosures.verdict[output][row] = self.verdict(lane, output);
+            |rows, packets| {
+                for (output, slots) in packets.chunks_exact(3).enumerate() {
+                    let results = enclosures.lo[output][rows.clone()].iter_mut().zip(slots[0].lanes());
+                    results.for_each(|(lo, lower)| *lo = lower.negated());
+                    enclosures.hi[output][rows.clone()].copy_from_slice(&slots[1].lanes()[..rows.len()]);
+                    let verdicts = enclosures.verdict[output][rows.clone()].iter_mut().zip(slots[2].lanes());
+                    verdicts.for_each(|(verdict, bits)| *verdict = self.verdict(*bits));
                 }
             },
         );
         Ok(())
+    }
+
+    /// All outputs over boxes in packets, as [`Kernel::run`] takes them, without any copy: a variable has two slots, the negated lower
+    /// end and the upper end; an output three, negated lower end, upper end, and the verdict's bits.
+    ///
+    /// # Panics
+    /// If the lengths are not those of as many whole groups.
+    pub fn enclose_packets(&self, boxes: &[Packet<T>], enclosures: &mut [Packet<T>]) {
+        self.shared.code.run(&self.shared.uniforms, boxes, enclosures);
     }
 
     /// The code itself, for callers who keep their boxes in packets.
@@ -175,28 +189,38 @@ impl<T: Real> IntervalKernel<T> {
         Ok(count)
     }
 
+    /// Computes rows; `take` gets each row's number and its outputs.
+    #[inline]
     fn fill(&self, count: usize, boxes: &[Interval], mut take: impl FnMut(usize, &dyn Fn(usize) -> Enclosure)) {
         let variables = self.shared.variables();
         let row_of = |row: usize| &boxes[row * variables..(row + 1) * variables];
         self.shared.run(
             count,
-            |row, lane| {
-                for (variable, interval) in row_of(row).iter().enumerate() {
-                    let [lo, hi] = ends::<T>(*interval);
-                    lane.set(2 * variable, lo);
-                    lane.set(2 * variable + 1, hi);
+            |rows, packets| {
+                for (lane, row) in rows.enumerate() {
+                    for (interval, slots) in row_of(row).iter().zip(packets.chunks_exact_mut(2)) {
+                        let [lo, hi] = ends::<T>(*interval);
+                        slots[0].lanes_mut()[lane] = lo;
+                        slots[1].lanes_mut()[lane] = hi;
+                    }
                 }
             },
-            |row, lane| {
-                let nowhere = row_of(row).iter().any(|interval| interval.is_empty());
-                take(row, &|output| if nowhere { EMPTY } else { self.enclosure(lane, output) });
+            |rows, packets| {
+                for (lane, row) in rows.enumerate() {
+                    let nowhere = row_of(row).iter().any(|interval| interval.is_empty());
+                    take(row, &|output| match nowhere {
+                        true => EMPTY,
+                        false => self.enclosure(packets, output, lane),
+                    });
+                }
             },
         );
     }
 
-    fn enclosure(&self, lane: &LaneOf<T>, output: usize) -> Enclosure {
-        let verdict = self.verdict(lane, output);
-        let (lo, hi) = (-lane.get(3 * output).to_f64(), lane.get(3 * output + 1).to_f64());
+    fn enclosure(&self, packets: &[Packet<T>], output: usize, lane: usize) -> Enclosure {
+        let slot = |i: usize| packets[3 * output + i].lanes()[lane];
+        let verdict = self.verdict(slot(2));
+        let (lo, hi) = (-slot(0).to_f64(), slot(1).to_f64());
         let lo = if lo.is_nan() { f64::NEG_INFINITY } else { lo };
         let hi = if hi.is_nan() { f64::INFINITY } else { hi };
         let interval = match Interval::new(lo, hi) {
@@ -208,8 +232,8 @@ impl<T: Real> IntervalKernel<T> {
         Enclosure { interval, verdict }
     }
 
-    fn verdict(&self, lane: &LaneOf<T>, output: usize) -> Verdict {
-        Verdict(if self.rigorous { lane.get(3 * output + 2).verdict() } else { 0 })
+    fn verdict(&self, bits: T) -> Verdict {
+        Verdict(if self.rigorous { bits.verdict() } else { 0 })
     }
 }
 

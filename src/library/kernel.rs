@@ -1,16 +1,18 @@
 //! What both kinds of kernels share: the code, the parameters' values, and the packets in which numbers travel.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::interval::Interval;
+use crate::kernel::Backend;
 use crate::kernel::Kernel;
 use crate::kernel::Packet;
 use crate::kernel::Real;
 use crate::library::Error;
 use crate::library::Function;
-use crate::program::scene::Parameter;
+use crate::limits::Budget;
 use crate::session;
 
 /// The two formats for which kernels are compiled: `f64` and `f32`.
@@ -18,8 +20,8 @@ pub trait Compile: Real + sealed::Sealed {
     /// Compiles a spec for this machine.
     ///
     /// # Errors
-    /// A fault of ours; a program that is too large is interpreted.
-    fn compile(spec: &Spec) -> Result<Arc<dyn Kernel<Self>>, Diagnostic>;
+    /// If it exceeds the budget, or for a fault of ours; a program that is too large to be compiled is interpreted.
+    fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<Self>>, Diagnostic>;
 }
 
 mod sealed {
@@ -29,19 +31,19 @@ mod sealed {
 }
 
 impl Compile for f64 {
-    fn compile(spec: &Spec) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
-        session::backend().compile_f64(spec)
+    fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
+        session::Within(budget).compile_f64(spec)
     }
 }
 
 impl Compile for f32 {
-    fn compile(spec: &Spec) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
-        session::backend().compile_f32(spec)
+    fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
+        session::Within(budget).compile_f32(spec)
     }
 }
 
-/// Groups that one call of the machine code computes in batches: 64 KiB of packets stay in the cache.
-const BATCH_BYTES: usize = 1 << 16;
+/// Bytes of packets that one call of the machine code works on in batches: they stay in the first cache.
+const BATCH_BYTES: usize = 1 << 14;
 
 /// Packets of a single box that need no allocation.
 const SMALL: usize = 12;
@@ -61,34 +63,26 @@ impl<T: Real> Shared<T> {
         self.function.variables().len()
     }
 
-    /// A parameter's place, if it can take a value.
-    pub fn parameter(&self, name: &str, value: Interval) -> Result<usize, Error> {
-        let parameters = self.function.parameters();
-        let Some(place) = parameters.iter().position(|parameter| parameter.name == name) else {
-            let known = parameters.iter().map(|parameter| parameter.name.clone()).collect();
-            return Err(Error::UnknownParameter { name: name.to_owned(), known });
-        };
-        let Parameter { range, .. } = parameters[place];
-        match range {
-            Some(range) if !range.contains_interval(value) || value.is_empty() => {
-                Err(Error::OutOfRange { name: name.to_owned(), value, range })
-            }
-            _ => Ok(place),
-        }
-    }
-
-    /// Computes `count` rows: `fill` writes row i into a lane of its group's inputs, `take` reads it from a lane of the
-    /// outputs.
-    pub fn run(&self, count: usize, fill: impl Fn(usize, &mut Lane<T>), mut take: impl FnMut(usize, &LaneOf<T>)) {
+    /// Computes `count` rows, a group of up to [`Real::LANES`] at a time: `fill` writes a range of rows into the first lanes of
+    /// the input packets, `take` reads it from those of the output packets.
+    #[inline]
+    pub fn run(
+        &self,
+        count: usize,
+        fill: impl Fn(Range<usize>, &mut [Packet<T>]),
+        mut take: impl FnMut(Range<usize>, &[Packet<T>]),
+    ) {
         let (input_slots, output_slots) = (self.code.input_slots(), self.code.output_slots());
-        if count == 1 && input_slots.max(output_slots) <= SMALL {
-            // One row takes no memory from the heap.
+        if count <= T::LANES && input_slots.max(output_slots) <= SMALL {
+            // One group takes no memory from the heap.
             let mut inputs = [Packet::default(); SMALL];
             let mut outputs = [Packet::default(); SMALL];
             let (inputs, outputs) = (&mut inputs[..input_slots], &mut outputs[..output_slots]);
-            fill(0, &mut Lane { packets: inputs, lane: 0 });
-            self.code.run(&self.uniforms, inputs, outputs);
-            take(0, &LaneOf { packets: outputs, lane: 0 });
+            if count > 0 {
+                fill(0..count, inputs);
+                self.code.run(&self.uniforms, inputs, outputs);
+                take(0..count, outputs);
+            }
             return;
         }
         let packet = size_of::<Packet<T>>();
@@ -97,45 +91,33 @@ impl<T: Real> Shared<T> {
         let mut inputs = vec![Packet::default(); groups * input_slots];
         let mut outputs = vec![Packet::default(); groups * output_slots];
         for start in (0..count).step_by(most * T::LANES) {
-            let rows = (count - start).min(most * T::LANES);
-            let groups = rows.div_ceil(T::LANES);
+            let end = count.min(start + most * T::LANES);
+            let groups = (end - start).div_ceil(T::LANES);
+            let rows = |group: usize| start + group * T::LANES..end.min(start + (group + 1) * T::LANES);
             // Lanes beyond the last row compute what was there before, which nobody reads.
-            for row in 0..rows {
-                let group = row / T::LANES * input_slots;
-                let packets = &mut inputs[group..group + input_slots];
-                fill(start + row, &mut Lane { packets, lane: row % T::LANES });
+            for (group, packets) in inputs.chunks_exact_mut(input_slots).take(groups).enumerate() {
+                fill(rows(group), packets);
             }
             let (inputs, outputs) = (&inputs[..groups * input_slots], &mut outputs[..groups * output_slots]);
             self.code.run(&self.uniforms, inputs, outputs);
-            for row in 0..rows {
-                let group = row / T::LANES * output_slots;
-                take(start + row, &LaneOf { packets: &outputs[group..group + output_slots], lane: row % T::LANES });
+            for (group, packets) in outputs.chunks_exact(output_slots).enumerate() {
+                take(rows(group), packets);
             }
         }
     }
 }
 
-/// Where a row is written: one lane of all slots.
-pub struct Lane<'a, T: Real> {
-    packets: &'a mut [Packet<T>],
-    lane: usize,
-}
-
-impl<T: Real> Lane<'_, T> {
-    pub fn set(&mut self, slot: usize, number: T) {
-        self.packets[slot].lanes_mut()[self.lane] = number;
-    }
-}
-
-/// Where a row is read.
-pub struct LaneOf<'a, T: Real> {
-    packets: &'a [Packet<T>],
-    lane: usize,
-}
-
-impl<T: Real> LaneOf<'_, T> {
-    pub fn get(&self, slot: usize) -> T {
-        self.packets[slot].lanes()[self.lane]
+/// A parameter's place, if it can take a value.
+pub fn parameter(function: &Function, name: &str, value: Interval) -> Result<usize, Error> {
+    let parameters = function.parameters();
+    let Some(place) = parameters.iter().position(|parameter| parameter.name == name) else {
+        let known = parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        return Err(Error::UnknownParameter { name: name.to_owned(), known });
+    };
+    let range = parameters[place].range.unwrap_or(Interval::ENTIRE);
+    match range.contains_interval(value) && !value.is_empty() {
+        true => Ok(place),
+        false => Err(Error::OutOfRange { name: name.to_owned(), value, range }),
     }
 }
 

@@ -8,6 +8,7 @@ mod interval_kernel;
 mod kernel;
 mod point_kernel;
 mod program;
+mod root_finder;
 
 pub use enclosure::Enclosure;
 pub use enclosure::Verdict;
@@ -22,3 +23,5 @@ pub use point_kernel::PointKernel;
 pub use program::Loader;
 pub use program::Program;
 pub use program::Refused;
+pub use root_finder::RayFinder;
+pub use root_finder::RootFinder;

@@ -11,6 +11,7 @@ use crate::library::Options;
 use crate::library::kernel::Compile;
 use crate::library::kernel::Shared;
 use crate::library::kernel::check;
+use crate::library::kernel::parameter;
 use crate::library::kernel::rows;
 
 /// A function compiled to compute its values at points, rounded to nearest: nothing is proved. NaN where it is undefined.
@@ -27,7 +28,7 @@ impl<T: Real> PointKernel<T> {
         T: Compile,
     {
         let spec = function.point_spec(options)?;
-        let code = T::compile(&spec)?;
+        let code = T::compile(&spec, &function.budget())?;
         let uniforms = function.parameters().iter().map(|parameter| T::nearest(parameter.value.mid())).collect();
         let outputs = function.outputs_of(options).into();
         Ok(Self { shared: Shared { code, uniforms, function: function.clone(), outputs } })
@@ -48,7 +49,7 @@ impl<T: Real> PointKernel<T> {
     /// # Errors
     /// If there is no such parameter, or the value lies outside of its range.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), Error> {
-        let place = self.shared.parameter(name, Interval::point(value))?;
+        let place = parameter(&self.shared.function, name, Interval::point(value))?;
         self.shared.uniforms[place] = T::nearest(value);
         Ok(())
     }
@@ -71,8 +72,8 @@ impl<T: Real> PointKernel<T> {
         let mut result = T::default();
         self.shared.run(
             1,
-            |_, lane| at.iter().enumerate().for_each(|(slot, x)| lane.set(slot, *x)),
-            |_, lane| result = lane.get(0),
+            |_, packets| packets.iter_mut().zip(at).for_each(|(slot, x)| slot.lanes_mut()[0] = *x),
+            |_, packets| result = packets[0].lanes()[0],
         );
         Ok(result)
     }
@@ -91,13 +92,17 @@ impl<T: Real> PointKernel<T> {
         check("values", count * width, values.len())?;
         self.shared.run(
             count,
-            |row, lane| {
-                let point = &points[row * variables..(row + 1) * variables];
-                point.iter().enumerate().for_each(|(slot, x)| lane.set(slot, *x));
+            |rows, packets| {
+                for (lane, row) in rows.enumerate() {
+                    let point = &points[row * variables..(row + 1) * variables];
+                    packets.iter_mut().zip(point).for_each(|(slot, x)| slot.lanes_mut()[lane] = *x);
+                }
             },
-            |row, lane| {
-                let results = &mut values[row * width..(row + 1) * width];
-                results.iter_mut().enumerate().for_each(|(slot, value)| *value = lane.get(slot));
+            |rows, packets| {
+                for (lane, row) in rows.enumerate() {
+                    let results = &mut values[row * width..(row + 1) * width];
+                    results.iter_mut().zip(packets).for_each(|(value, slot)| *value = slot.lanes()[lane]);
+                }
             },
         );
         Ok(())
@@ -117,8 +122,16 @@ impl<T: Real> PointKernel<T> {
         }
         self.shared.run(
             count,
-            |row, lane| points.iter().enumerate().for_each(|(slot, column)| lane.set(slot, column[row])),
-            |row, lane| values.iter_mut().enumerate().for_each(|(slot, column)| column[row] = lane.get(slot)),
+            |rows, packets| {
+                for (slot, column) in packets.iter_mut().zip(points) {
+                    slot.lanes_mut()[..rows.len()].copy_from_slice(&column[rows.clone()]);
+                }
+            },
+            |rows, packets| {
+                for (slot, column) in packets.iter().zip(values.iter_mut()) {
+                    column[rows.clone()].copy_from_slice(&slot.lanes()[..rows.len()]);
+                }
+            },
         );
         Ok(())
     }

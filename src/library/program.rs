@@ -242,7 +242,7 @@ impl Parsed {
         budget: &Budget,
     ) -> Result<program::Functions, Vec<Diagnostic>> {
         let importer: &dyn Importer = if self.path.is_some() { &program::FileSystem } else { &program::Embedded };
-        let context = Context { importer, differentiate: &derive::derivative, overrides: &[], budget };
+        let context = Context { importer, differentiate: &derive::derivative_within, overrides: &[], budget };
         program::resolve_functions(sources, self.file, parsed, only, &context)
     }
 

@@ -26,6 +26,11 @@ pub fn exact(op: Op, operands: &[&BigRational]) -> Option<BigRational> {
     let one = BigRational::one;
     let when = |condition: bool, value: BigRational| condition.then_some(value);
     let truth = |condition: bool| Some(if condition { one() } else { zero() });
+    if let (Some(x), Some(y)) = (x, y)
+        && worst_bits(op, x, y) > MAX_BITS
+    {
+        return None;
+    }
     let value = match op {
         Op::Const(_) | Op::Var(_) | Op::Pi | Op::Entire | Op::Kink | Op::SelectJump => None,
         Op::PowInt(n) => power(x?, n.into()),
@@ -67,6 +72,17 @@ pub fn exact(op: Op, operands: &[&BigRational]) -> Option<BigRational> {
         Op::Select => None,
     }?;
     (bits(&value) <= MAX_BITS).then_some(value)
+}
+
+/// How long the result of an arithmetic operation is where nothing cancels: looked at first, because a common denominator
+/// takes the square of its length to find, and a sum that is too long in the end would be tried again by every pass.
+fn worst_bits(op: Op, x: &BigRational, y: &BigRational) -> u64 {
+    let [xn, xd, yn, yd] = [x.numer(), x.denom(), y.numer(), y.denom()].map(BigInt::bits);
+    match op {
+        Op::Add | Op::Sub | Op::Mod => xd + yd + (xn + yd).max(yn + xd),
+        Op::Mul | Op::Div => xn + xd + yn + yd,
+        _ => 0,
+    }
 }
 
 fn bits(x: &BigRational) -> u64 {

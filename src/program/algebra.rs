@@ -29,6 +29,12 @@ impl Lowerer<'_> {
     /// scales it.
     pub fn arithmetic(&mut self, op: Op, (a, a_span): (Meaning, Span), (b, b_span): (Meaning, Span)) -> Meaning {
         let linear = matches!(op, Op::Add | Op::Sub);
+        // A list of any length takes two letters.
+        if let (Meaning::Vector(list), _) | (_, Meaning::Vector(list)) = (&a, &b)
+            && !self.spend(list.len(), a_span.to(b_span))
+        {
+            return Meaning::Invalid;
+        }
         match (&a, &b) {
             (Meaning::Invalid, _) | (_, Meaning::Invalid) => Meaning::Invalid,
             (Meaning::Scalar(a), Meaning::Scalar(b)) => Meaning::Scalar(self.graph.push(op, &[*a, *b])),

@@ -158,7 +158,7 @@ impl Lowerer<'_> {
             let meaning = match (slot, &param.default) {
                 (Some((meaning, _)), _) => meaning,
                 // A default may use the parameters before it.
-                (None, Some(default)) => self.in_frame(item.file, locals.clone(), call(), default),
+                (None, Some(default)) => self.in_frame(item.file, &mut locals, call(), default),
                 (None, None) => Meaning::Invalid,
             };
             if matches!(meaning, Meaning::Invalid) {
@@ -166,7 +166,7 @@ impl Lowerer<'_> {
             }
             locals.push((param.name.text.clone(), meaning));
         }
-        self.in_frame(item.file, locals, call(), body)
+        self.in_frame(item.file, &mut locals, call(), body)
     }
 
     /// Arguments in the places of their parameters, of which those marked `true` are required. Further arguments of a
@@ -358,7 +358,13 @@ impl Lowerer<'_> {
             return Meaning::Invalid;
         }
         let before = self.graph.len();
-        let derivative = (self.differentiate)(&mut self.graph, f, by);
+        let derivative = match (self.differentiate)(&mut self.graph, f, by, self.budget) {
+            Ok(derivative) => derivative,
+            Err(exceeded) => {
+                self.give_up(Diagnostic::from(exceeded).at(*f_span, "of the derivatives of this"));
+                return Meaning::Invalid;
+            }
+        };
         // Derivatives of derivatives grow with every order.
         if !self.spend(self.graph.len() - before, *f_span) {
             return Meaning::Invalid;

@@ -1,7 +1,11 @@
 //! The domain: what was written, or a choice that shows the whole picture.
 
+use std::collections::HashMap;
+
 use crate::graph::Graph;
 use crate::interval::Interval;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
 use crate::syntax::ast::Expr;
 
 use super::enclose::Enclosures;
@@ -60,6 +64,9 @@ impl Lowerer<'_> {
 /// margin (an eighth to a third), if the natural interval extension proves within a bounded cost that nothing of them lies outside (up to
 /// [`LARGEST`]); else [-4, 4]^n.
 ///
+/// # Errors
+/// If the time ran out.
+///
 /// Parameters vary over their ranges and the time over all reals; if that leaves the shapes unbounded, the values that
 /// they have now decide.
 pub(super) fn default_domain(
@@ -67,17 +74,25 @@ pub(super) fn default_domain(
     shapes: &[Shape],
     parameters: &[Parameter],
     dimension: usize,
-) -> Vec<Interval> {
+    budget: &Budget,
+) -> Result<Vec<Interval>, Exceeded> {
     let widest = |p: &Parameter| p.range.unwrap_or(Interval::ENTIRE);
     let current = |p: &Parameter| p.value;
     let attempts: [&dyn Fn(&Parameter) -> Interval; 2] = [&widest, &current];
     // Without parameters both are the same.
     let attempts = if parameters.is_empty() { &attempts[..1] } else { &attempts };
-    let found = attempts.iter().find_map(|range| {
+    for range in attempts {
         let ranges: Vec<(&str, Interval)> = parameters.iter().map(|p| (p.name.as_str(), range(p))).collect();
-        Search::new(graph, shapes, &ranges, dimension).fit()
-    });
-    found.unwrap_or_else(|| vec![symmetric(FALLBACK); dimension])
+        let mut search = Search::new(graph, shapes, &ranges, dimension, budget);
+        let found = search.fit();
+        if let Some(exceeded) = search.exceeded {
+            return Err(exceeded);
+        }
+        if let Some(domain) = found {
+            return Ok(domain);
+        }
+    }
+    Ok(vec![symmetric(FALLBACK); dimension])
 }
 
 /// The search for a box around all zeros.
@@ -90,10 +105,19 @@ struct Search<'g> {
     /// The place of each coordinate in `inputs`, if it occurs.
     places: Vec<Option<usize>>,
     work: usize,
+    budget: &'g Budget,
+    /// Ends the search: nothing more is proved empty.
+    exceeded: Option<Exceeded>,
 }
 
 impl<'g> Search<'g> {
-    fn new(graph: &'g Graph, shapes: &[Shape], parameters: &[(&str, Interval)], dimension: usize) -> Self {
+    fn new(
+        graph: &'g Graph,
+        shapes: &[Shape],
+        parameters: &[(&str, Interval)],
+        dimension: usize,
+        budget: &'g Budget,
+    ) -> Self {
         let mut roots = Vec::new();
         let mut places = Vec::new();
         for shape in shapes {
@@ -104,13 +128,13 @@ impl<'g> Search<'g> {
         }
         let enclosures = Enclosures::new(graph, &roots);
         let names = enclosures.inputs();
-        let range =
-            |name: &String| parameters.iter().find(|(p, _)| p == name).map_or(Interval::ENTIRE, |(_, range)| *range);
+        let parameters: HashMap<&str, Interval> = parameters.iter().copied().collect();
+        let range = |name: &String| parameters.get(name.as_str()).copied().unwrap_or(Interval::ENTIRE);
         let inputs = names.iter().map(range).collect();
         let coordinate = |name: &&str| names.iter().position(|input| input == name);
         let coordinates = COORDINATES[..dimension].iter().map(coordinate).collect();
         let work = (100 * enclosures.cost()).clamp(WORK, MAX_WORK);
-        Self { enclosures, shapes: places, inputs, places: coordinates, work }
+        Self { enclosures, shapes: places, inputs, places: coordinates, work, budget, exceeded: None }
     }
 
     fn fit(&mut self) -> Option<Vec<Interval>> {
@@ -179,7 +203,8 @@ impl<'g> Search<'g> {
         let mut stack = vec![(region.to_vec(), 0)];
         while let Some((cell, depth)) = stack.pop() {
             cells += 1;
-            if self.work < self.enclosures.cost() || cells > MAX_CELLS {
+            self.exceeded = self.exceeded.or(self.budget.time().err());
+            if self.work < self.enclosures.cost() || cells > MAX_CELLS || self.exceeded.is_some() {
                 return false;
             }
             self.work -= self.enclosures.cost();

@@ -147,15 +147,23 @@ pub(super) fn component_index(length: usize, span: Span) -> Diagnostic {
         .help("the number must be written out or a constant")
 }
 
-pub(super) fn too_much_expansion(span: Span, steps: usize) -> Diagnostic {
-    Diagnostic::error(code::TOO_MUCH_EXPANSION, "this formula grows too large when its functions are inlined")
-        .at(span, format!("given up here after {steps} steps"))
-        .help("functions that call functions several times multiply; name a shared part with `let`")
+pub(super) fn too_much_expansion(span: Span) -> Diagnostic {
+    Diagnostic::error(
+        code::TOO_MUCH_EXPANSION,
+        "this formula grows too large when its functions and lists are written out",
+    )
+    .at(span, "given up here")
+    .help("functions that call functions several times multiply; name a shared part with `let`")
 }
 
 pub(super) fn too_much_text(path: &str, span: Span, allowed: usize) -> Diagnostic {
     let title = format!("with `{path}` there is more text than allowed: {} KiB in all", allowed >> 10);
     Diagnostic::error(code::FILE_TOO_LARGE, title).at(span, "not read")
+}
+
+pub(super) fn too_many_parameters(name: &str, found: usize, allowed: usize, span: Span) -> Diagnostic {
+    let title = format!("`{name}` has {found} parameters, and {allowed} are allowed");
+    Diagnostic::error(code::LARGER_THAN_ALLOWED, title).at(span, "").help("a list can hold many numbers")
 }
 
 pub(super) fn too_deep(span: Span) -> Diagnostic {

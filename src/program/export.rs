@@ -91,12 +91,19 @@ pub fn resolve_functions(
         return Err(diagnostics);
     }
     let mut found = Functions::default();
+    let mut faults = Vec::new();
+    let mut nodes = 0;
     for (index, statement) in program.files[0].module.statements.iter().enumerate() {
         if only.is_some_and(|only| defined_name(statement).is_none_or(|name| name.text != only)) {
             continue;
         }
         let Some(lowered) = lower(&mut lowerer, index, statement) else { continue };
         let diagnostics = lowerer.take_diagnostics();
+        if !matches!(statement.kind, StatementKind::Fn { .. }) && !diagnostics.is_empty() {
+            // A mistake in a shape is one of the file; a `fn` may be meant for regions, and nobody calls it here.
+            faults.extend(diagnostics);
+            continue;
+        }
         let refuse = |diagnostics| Refused { name: lowered.name.clone(), span: statement.span, diagnostics };
         let values = match values(&lowered.meaning) {
             Some(values) if diagnostics.is_empty() => values,
@@ -108,19 +115,25 @@ pub fn resolve_functions(
                 let needs = "a function for other programs has numbers";
                 found.refused.push(refuse(vec![match lowered.meaning {
                     // What an earlier function has reported.
-                    Meaning::Invalid => errors::too_much_expansion(lowered.span, context.budget.limits().steps),
+                    Meaning::Invalid => errors::too_much_expansion(lowered.span),
                     _ => errors::wrong_kind(needs, lowered.meaning.kind(), lowered.span),
                 }]));
                 continue;
             }
         };
         match function(&lowerer.graph, &lowered, &values, &parameters, statement) {
-            Ok(Some(function)) => found.functions.push(function),
+            Ok(Some(function)) => {
+                // Each has a copy of what it shares with others.
+                nodes += function.graph.len();
+                let afforded = context.budget.nodes(nodes).and_then(|()| context.budget.time());
+                afforded.map_err(|exceeded| vec![Diagnostic::from(exceeded).at(statement.span, "up to here")])?;
+                found.functions.push(function);
+            }
             Ok(None) => {}
             Err(diagnostic) => found.refused.push(refuse(vec![diagnostic])),
         }
     }
-    Ok(found)
+    if faults.is_empty() { Ok(found) } else { Err(faults) }
 }
 
 /// A statement's formula.
@@ -145,10 +158,10 @@ fn lower<'a>(lowerer: &mut Lowerer, index: usize, statement: &'a Statement) -> O
     match &statement.kind {
         StatementKind::Fn { name, params, body } => {
             let locals = params.iter().map(|param| {
-                (param.name.text.clone(), Meaning::Scalar(lowerer.graph.var(&argument(&param.name.text))))
+                (param.name.text.clone(), Meaning::Scalar(lowerer.graph.var(&input(name, &param.name.text))))
             });
-            let locals = locals.collect();
-            let meaning = lowerer.in_frame(0, locals, (name.text.clone(), name.span), body);
+            let mut locals = locals.collect();
+            let meaning = lowerer.in_frame(0, &mut locals, (name.text.clone(), name.span), body);
             Some(Lowered { name: name.text.clone(), arguments: params, callable: true, meaning, span: body.span })
         }
         StatementKind::Let { name, value } => Some(whole(lowerer, &name.text, value)),
@@ -169,9 +182,13 @@ fn unnamed(program: &Program, index: usize) -> String {
     format!("shape{}", shapes.filter(is_shape).count())
 }
 
-/// The graph's input for an argument; no text of the language reads like it.
-fn argument(name: &str) -> String {
-    format!("{name} of fn")
+/// The graph's input for an argument of a function. That of a `fn` has a name that no text of the language reads like; in an
+/// expression the coordinates and the time are meant.
+fn input(function: &Name, argument: &str) -> String {
+    if function.text.is_empty() && (COORDINATES.contains(&argument) || argument == TIME) {
+        return argument.to_owned();
+    }
+    format!("{argument} of fn")
 }
 
 fn values(meaning: &Meaning) -> Option<Vec<Value>> {
@@ -193,10 +210,14 @@ fn function(
     parameters: &[Parameter],
     statement: &Statement,
 ) -> Result<Option<Function>, Diagnostic> {
-    let used = inputs_of(graph, values);
+    let used: HashSet<String> = inputs_of(graph, values).into_iter().collect();
     let mut variables: Vec<String> = lowered.arguments.iter().map(|param| param.name.text.clone()).collect();
-    let mut inputs: Vec<String> = variables.iter().map(|name| argument(name)).collect();
-    for name in COORDINATES.iter().chain([&TIME]).filter(|name| used.iter().any(|other| other == *name)) {
+    let name = Name { text: lowered.name.clone(), span: lowered.span };
+    let mut inputs: Vec<String> = variables.iter().map(|variable| input(&name, variable)).collect();
+    for name in COORDINATES.iter().chain([&TIME]).filter(|name| used.contains(**name)) {
+        if inputs.iter().any(|input| input == name) {
+            continue;
+        }
         if variables.iter().any(|variable| variable == name) {
             let title =
                 format!("`{}` depends on the coordinate `{name}` and on an argument of that name", lowered.name);

@@ -106,4 +106,20 @@ mod tests {
         assert_eq!(FileSystem.read(Path::new("no/such/file.imp"), 9).unwrap_err().kind(), io::ErrorKind::NotFound);
         assert!(FileSystem.names(Path::new("no/such/folder")).is_empty());
     }
+
+    #[test]
+    fn no_more_is_read_than_allowed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("part.imp");
+        fs::write(&path, "let a = 1").unwrap();
+        assert_eq!(FileSystem.read(&path, 9).unwrap(), "let a = 1");
+        assert_eq!(FileSystem.read(&path, 8).unwrap_err().kind(), io::ErrorKind::FileTooLarge);
+        assert!(FileSystem.read(folder.path(), 9).unwrap_err().to_string().contains("folder"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_are_not_read() {
+        assert!(FileSystem.read(Path::new("/dev/zero"), 9).unwrap_err().to_string().contains("no regular file"));
+    }
 }

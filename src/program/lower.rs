@@ -14,6 +14,7 @@ use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
 use crate::limits::Budget;
+use crate::limits::Exceeded;
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::ExprKind;
 use crate::syntax::ast::Join;
@@ -48,7 +49,7 @@ pub(super) struct Lowerer<'p> {
     pub graph: Graph,
     pub exact: Exact,
     pub differentiate: &'p Differentiate,
-    budget: &'p Budget,
+    pub budget: &'p Budget,
     diagnostics: Vec<Diagnostic>,
     reported: HashSet<(&'static str, Option<Span>)>,
     /// By item, once evaluated.
@@ -162,12 +163,15 @@ impl<'p> Lowerer<'p> {
     pub fn spend(&mut self, steps: usize, span: Span) -> bool {
         self.expansion = self.expansion.saturating_add(steps);
         if !self.exhausted && self.budget.steps(self.expansion).is_err() {
-            // The call that was written, not the one among millions at which patience ended.
-            let call = self.frames.iter().find_map(|frame| frame.call.as_ref());
-            let place = call.map_or(span, |(_, span)| *span);
-            self.give_up(errors::too_much_expansion(place, self.budget.limits().steps));
+            self.give_up(errors::too_much_expansion(self.written(span)));
         }
         !self.exhausted
+    }
+
+    /// The call that was written, not the one among millions at which patience ended.
+    fn written(&self, span: Span) -> Span {
+        let call = self.frames.iter().find_map(|frame| frame.call.as_ref());
+        call.map_or(span, |(_, span)| *span)
     }
 
     /// Whether time is left and the graph is no larger than allowed; a message when it no longer is.
@@ -175,28 +179,34 @@ impl<'p> Lowerer<'p> {
         if !self.exhausted
             && let Err(exceeded) = self.budget.tick().and_then(|()| self.budget.nodes(self.graph.len()))
         {
-            self.give_up(Diagnostic::from(exceeded).at(span, "given up here"));
+            // Functions that multiply are what makes a graph large most often.
+            let inlined = self.frames.iter().any(|frame| frame.call.is_some());
+            self.give_up(match exceeded {
+                Exceeded::Count { .. } if inlined => errors::too_much_expansion(self.written(span)),
+                _ => Diagnostic::from(exceeded).at(self.written(span), "given up here"),
+            });
         }
         !self.exhausted
     }
 
     /// Ends the work: once, wherever a limit is met first; everything after it is given up too.
-    fn give_up(&mut self, diagnostic: Diagnostic) {
-        self.exhausted = true;
-        self.diagnostics.push(diagnostic);
+    pub fn give_up(&mut self, diagnostic: Diagnostic) {
+        if !std::mem::replace(&mut self.exhausted, true) {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
-    /// Lowers `body` with the parameters of a called function.
+    /// Lowers `body` with the parameters of a called function, which are lent.
     pub fn in_frame(
         &mut self,
         file: usize,
-        locals: Vec<(String, Meaning)>,
+        locals: &mut Vec<(String, Meaning)>,
         call: (String, Span),
         body: &Expr,
     ) -> Meaning {
-        self.frames.push(Frame { file, locals, call: Some(call) });
+        self.frames.push(Frame { file, locals: std::mem::take(locals), call: Some(call) });
         let meaning = self.lower(body);
-        self.frames.pop();
+        *locals = self.frames.pop().map(|frame| frame.locals).unwrap_or_default();
         meaning
     }
 

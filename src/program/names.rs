@@ -11,6 +11,7 @@ use std::rc::Rc;
 
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
+use crate::diagnostic::MAX_SHOWN;
 use crate::diagnostic::SourceMap;
 use crate::diagnostic::Span;
 use crate::diagnostic::did_you_mean;
@@ -233,7 +234,10 @@ impl Program {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 let mut diagnostic = errors::import_failed(path, span, "there is no such file");
                 let wanted = target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-                let siblings = importer.names(target.parent().unwrap_or(std::path::Path::new("")));
+                // Reading the folder takes a while, and nobody sees more messages.
+                let shown = diagnostics.len() <= MAX_SHOWN;
+                let folder = target.parent().unwrap_or(std::path::Path::new(""));
+                let siblings = if shown { importer.names(folder) } else { Vec::new() };
                 let library = stdlib::FILES.iter().map(|(name, _)| *name);
                 let as_library = format!("std/{wanted}");
                 if let Some(name) = library.clone().find(|name| *name == as_library) {

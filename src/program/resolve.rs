@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::collections::HashSet;
 
+use crate::diagnostic;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
 use crate::diagnostic::SourceMap;
@@ -13,6 +14,7 @@ use crate::graph::Op;
 use crate::graph::Value;
 use crate::interval::Interval;
 use crate::limits::Budget;
+use crate::limits::Exceeded;
 use crate::syntax::ast::Expr;
 use crate::syntax::ast::Module;
 use crate::syntax::ast::Name;
@@ -22,6 +24,7 @@ use crate::syntax::ast::StatementKind;
 
 use super::builtins::TIME;
 use super::domain::default_domain;
+use super::enclose::Dependence;
 use super::enclose::inputs_of;
 use super::errors;
 use super::import::Importer;
@@ -29,7 +32,6 @@ use super::lower::Lowerer;
 use super::lower::as_truth;
 use super::names::Program;
 use super::names::defined_name;
-use super::scene::COORDINATES;
 use super::scene::Parameter;
 use super::scene::Scene;
 use super::scene::Shape;
@@ -39,8 +41,8 @@ use super::settings::Settings;
 use super::values::Meaning;
 
 /// Symbolic differentiation, which a higher layer provides: adds the derivative of the second argument by the third, an
-/// input, to the graph.
-pub type Differentiate = dyn Fn(&mut Graph, Value, Value) -> Value;
+/// input, to the graph, within a budget.
+pub type Differentiate = dyn Fn(&mut Graph, Value, Value, &Budget) -> Result<Value, Exceeded>;
 
 /// What resolving needs from outside.
 pub struct Context<'a> {
@@ -94,7 +96,10 @@ pub fn resolve(
     let domain_given = written.is_some();
     let domain = match written {
         Some((domain, _)) => domain,
-        None => default_domain(&graph, &shapes, &parameters, dimension),
+        None => match default_domain(&graph, &shapes, &parameters, dimension, context.budget) {
+            Ok(domain) => domain,
+            Err(exceeded) => return (None, vec![exceeded.into()]),
+        },
     };
     let scene = Scene { graph, shapes, parameters, domain, domain_given, view: settings.view };
     (Some(scene), Vec::new())
@@ -205,12 +210,13 @@ pub fn resolve_constant(
 struct Lowered {
     shape: Shape,
     keyword: Option<ShapeKeyword>,
-    /// Names of the inputs that it depends on.
-    inputs: Vec<String>,
+    /// Whether it depends on each of the coordinates.
+    coordinates: [bool; 3],
 }
 
 fn lower_shapes(lowerer: &mut Lowerer) -> Vec<Lowered> {
     let program = lowerer.program;
+    let mut dependence = Dependence::default();
     let mut shapes = Vec::new();
     for (index, statement) in program.files[0].module.statements.iter().enumerate() {
         let StatementKind::Shape { keyword, name, relation, condition } = &statement.kind else { continue };
@@ -234,14 +240,14 @@ fn lower_shapes(lowerer: &mut Lowerer) -> Vec<Lowered> {
             None => besides,
         };
         let roots: Vec<Value> = [field].into_iter().chain(condition).collect();
-        let inputs = inputs_of(&lowerer.graph, &roots);
-        if !inputs.iter().any(|input| COORDINATES.contains(&input.as_str())) {
+        let coordinates = dependence.of(&lowerer.graph, &roots);
+        if coordinates == [false; 3] {
             lowerer.report(errors::no_coordinate(relation.span));
             continue;
         }
         let name = name.as_ref().map(|name| name.text.clone()).unwrap_or_default();
         let shape = Shape { name, kind, field, condition, span: statement.span };
-        shapes.push(Lowered { shape, keyword: *keyword, inputs });
+        shapes.push(Lowered { shape, keyword: *keyword, coordinates });
     }
     shapes
 }
@@ -300,11 +306,12 @@ fn equation_among(lowerer: &mut Lowerer, truth: Value) -> Option<(Value, Option<
 pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]) -> Vec<Parameter> {
     let program = lowerer.program;
     let mut found: Vec<(Parameter, Span)> = Vec::new();
+    let mut places: HashMap<&str, Span> = HashMap::new();
     let mut items = program.order.clone();
     items.sort_unstable();
     for id in items {
         let StatementKind::Param { name, value, range } = &program.statement(id).kind else { continue };
-        if let Some((_, first)) = found.iter().find(|(other, _)| other.name == name.text) {
+        if let Some(first) = places.get(name.text.as_str()) {
             lowerer.report(errors::same_parameter(&name.text, name.span, *first));
             continue;
         }
@@ -328,6 +335,7 @@ pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]
                 value.span,
             ));
         }
+        places.insert(&name.text, name.span);
         found.push((Parameter { name: name.text.clone(), value: number, range }, name.span));
     }
     let time = Parameter { name: TIME.to_owned(), value: Interval::ZERO, range: None };
@@ -372,7 +380,7 @@ fn domain_statement(lowerer: &mut Lowerer) -> Option<(Vec<Interval>, Span)> {
 
 /// Whether the scene lies in space or in the plane, which every shape must agree to, and the names of shapes without one.
 fn check_dimension(lowerer: &mut Lowerer, shapes: &mut [Lowered], written: Option<usize>) -> usize {
-    let uses_z = |lowered: &Lowered| lowered.inputs.iter().any(|input| input == COORDINATES[2]);
+    let uses_z = |lowered: &Lowered| lowered.coordinates[2];
     let is_surface = |lowered: &Lowered| lowered.keyword == Some(ShapeKeyword::Surface);
     let space = shapes.iter().any(|lowered| is_surface(lowered) || uses_z(lowered));
     let dimension = written.unwrap_or(if space { 3 } else { 2 });
@@ -400,11 +408,16 @@ fn check_dimension(lowerer: &mut Lowerer, shapes: &mut [Lowered], written: Optio
             lowerer.report(errors::dimension("a surface in a scene of two dimensions", span, "this surface", help));
         }
     }
+    let mut number = 0;
     let mut taken: HashSet<String> = shapes.iter().map(|lowered| lowered.shape.name.clone()).collect();
     for (index, lowered) in shapes.iter_mut().enumerate().filter(|(_, lowered)| lowered.shape.name.is_empty()) {
         let word = if dimension == 3 { "surface" } else { "curve" };
-        let mut names = (index + 1..).map(|number| format!("{word}{number}"));
-        lowered.shape.name = names.find(|name| taken.insert(name.clone())).unwrap_or_default();
+        // All numbers from an earlier shape's place up to its number are taken.
+        number = number.max(index) + 1;
+        while !taken.insert(format!("{word}{number}")) {
+            number += 1;
+        }
+        lowered.shape.name = format!("{word}{number}");
     }
     dimension
 }
@@ -429,8 +442,9 @@ fn compact(graph: &Graph, mut shapes: Vec<Shape>) -> (Graph, Vec<Shape>) {
     (result, shapes)
 }
 
-/// In the order of the source, messages without a place last.
-pub(super) fn sort(diagnostics: &mut [Diagnostic]) {
+/// In the order of the source, messages without a place last; no more than anyone reads.
+pub(super) fn sort(diagnostics: &mut Vec<Diagnostic>) {
     let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| (label.span.file, label.span.start));
     diagnostics.sort_by_key(|diagnostic| (place(diagnostic).is_none(), place(diagnostic)));
+    diagnostic::shorten(diagnostics, 0);
 }

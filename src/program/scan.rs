@@ -20,14 +20,21 @@ use super::errors;
 use super::names::Item;
 use super::names::Lookup;
 use super::names::Program;
+use super::names::ProgramFile;
 use super::settings;
 use super::stdlib;
 use super::values::ItemId;
 
+/// Unknown names with a suggestion, which takes a look at every name there is.
+const SUGGESTED: usize = 20;
+
+/// Parameters of one function; they are looked through for every name in it.
+const MAX_PARAMETERS: usize = 256;
+
 impl Program {
     /// Checks the names in the main file and in everything that it reaches, and finds the order of evaluation.
     pub fn analyse(&mut self, sources: &mut SourceMap, diagnostics: &mut Vec<Diagnostic>) {
-        let mut scan = Scan { sources, diagnostics, reported: HashSet::new() };
+        let mut scan = Scan { sources, diagnostics, reported: HashSet::new(), introduced: HashMap::new() };
         let module = Rc::clone(&self.files[0].module);
         let mut needs: HashMap<ItemId, Vec<ItemId>> = HashMap::new();
         let mut open = Vec::new();
@@ -43,7 +50,16 @@ impl Program {
             }
             let Item { file, statement, .. } = self.items[item.0];
             let module = Rc::clone(&self.files[file].module);
-            let mentioned = self.scan_statement(file, &module.statements[statement], &mut scan);
+            let statement = &module.statements[statement];
+            if let StatementKind::Fn { name, params, .. } = &statement.kind
+                && params.len() > MAX_PARAMETERS
+            {
+                scan.diagnostics.push(errors::too_many_parameters(&name.text, params.len(), MAX_PARAMETERS, name.span));
+                self.items[item.0].broken = true;
+                needs.insert(item, Vec::new());
+                continue;
+            }
+            let mentioned = self.scan_statement(file, statement, &mut scan);
             open.extend(&mentioned);
             needs.insert(item, mentioned);
         }
@@ -78,6 +94,8 @@ impl Program {
                 match state[needed.0] {
                     State::New => path.push((needed, 0)),
                     State::Done => {}
+                    // A circle through what is in another one is not reported.
+                    State::Open if self.items[item.0].broken || self.items[needed.0].broken => {}
                     State::Open => {
                         let start = path.iter().position(|(on_path, _)| *on_path == needed).unwrap_or(0);
                         let circle: Vec<ItemId> = path[start..].iter().map(|(item, _)| *item).collect();
@@ -177,11 +195,16 @@ impl Program {
                 scan.diagnostics.push(errors::ambiguous_name(name, span, place(first), place(second)));
             }
             Lookup::Unknown => {
-                let lost =
-                    self.files[file].origin.faulty && is_introduced(name, &scan.sources.get(self.files[file].id).text);
+                let ProgramFile { id, origin, .. } = self.files[file];
+                let lost = origin.faulty && {
+                    let introduced = || introduced(&scan.sources.get(id).text);
+                    scan.introduced.entry(file).or_insert_with(introduced).contains(name)
+                };
                 if !lost && scan.reported.insert((file, name.to_owned())) {
                     let diagnostic = errors::unknown_name(name, span, used.called);
-                    scan.diagnostics.push(self.help_unknown(diagnostic, file, name, used));
+                    let shown = scan.reported.len() <= SUGGESTED;
+                    let diagnostic = if shown { self.help_unknown(diagnostic, file, name, used) } else { diagnostic };
+                    scan.diagnostics.push(diagnostic);
                 }
             }
         }
@@ -248,22 +271,19 @@ struct Scan<'a> {
     sources: &'a mut SourceMap,
     diagnostics: &'a mut Vec<Diagnostic>,
     reported: HashSet<(usize, String)>,
+    /// By file, what [`introduced`] says of it.
+    introduced: HashMap<usize, HashSet<String>>,
 }
 
-/// Whether a text holds the name right after a keyword that defines names: the parser may have left the definition out.
-fn is_introduced(name: &str, text: &str) -> bool {
+/// The names that stand in a text right after a keyword that defines names: the parser may have left a definition out.
+fn introduced(text: &str) -> HashSet<String> {
     const KEYWORDS: [&str; 5] = ["let", "fn", "param", "surface", "curve"];
-    let mut words = text.split_whitespace();
-    while let Some(word) = words.next() {
-        let next = words.clone().next().unwrap_or("");
-        let rest = next.strip_prefix(name);
-        if KEYWORDS.contains(&word)
-            && rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
-        {
-            return true;
-        }
-    }
-    false
+    let words = text.split_whitespace().zip(text.split_whitespace().skip(1));
+    let names = words.filter(|(word, _)| KEYWORDS.contains(word)).map(|(_, next)| {
+        let end = next.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '\'')).unwrap_or(next.len());
+        next[..end].to_owned()
+    });
+    names.collect()
 }
 
 /// The name that stands alone on the left of an equation.

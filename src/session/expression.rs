@@ -173,7 +173,7 @@ impl Workspace {
     }
 
     fn context<'a>(&'a self, budget: &'a Budget) -> Context<'a> {
-        Context { importer: &self.files, differentiate: &derive::derivative, overrides: &[], budget }
+        Context { importer: &self.files, differentiate: &derive::derivative_within, overrides: &[], budget }
     }
 
     /// What reading a text may cost.
@@ -484,6 +484,23 @@ mod tests {
         assert_eq!(why("floor(x)", 0.0, 1.5), "may jump on the box: floor of [0, 1.5]");
         assert_eq!(why("floor(x)", 0.0, 0.5), "continuous on the box, but not beyond its edge: floor of [0, 0.5]");
         assert_eq!(why("exp(x)", 0.0, 1e6), "continuous, but without finite bounds: exp of [0, 1000000]");
+    }
+
+    #[test]
+    fn a_workspace_holds_to_its_limits() {
+        let mut workspace = Workspace::within(Limits { source_bytes: 20, nodes: 9, files: 0, ..Limits::untrusted() });
+        let none = Bindings::new();
+        let first = |result: Result<_, Messages>| result.err().map(|messages| messages.diagnostics[0].code);
+        let long = format!("let a = 1{}", "+1".repeat(20));
+        assert_eq!(first(workspace.define(&Snippet::whole("line 1", &long), &none)), Some(code::LARGER_THAN_ALLOWED));
+        let import = Snippet::whole("line 1", "import \"a.imp\"");
+        assert_eq!(first(workspace.define(&import, &none)), Some(code::LARGER_THAN_ALLOWED));
+        workspace.define(&Snippet::whole("line 1", "fn f(u) = u^2 + u"), &none).unwrap();
+        let expression =
+            |text: &str| workspace.expression(&Snippet::whole("line 2", text), &["x"], Reading::Value).map(|_| ());
+        assert!(expression("f(f(x))").is_ok());
+        let found = expression("f(f(f(f(f(x)))))").unwrap_err();
+        assert_eq!(found.diagnostics[0].code, code::LARGER_THAN_ALLOWED);
     }
 
     #[test]

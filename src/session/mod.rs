@@ -10,6 +10,7 @@ mod snippet;
 mod stages;
 mod value;
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use num_rational::BigRational;
@@ -35,6 +36,7 @@ use crate::program::scene::Scene;
 use crate::syntax;
 use crate::syntax::ast::Module;
 
+pub use crate::session::backend::Within;
 pub use crate::session::backend::backend;
 pub use crate::session::load::bytes;
 pub use crate::session::save::cannot_write;
@@ -139,7 +141,7 @@ impl Artefact {
 
         // Tree to formulas in one graph, with the scene around them. Statements that could not be read do not keep the
         // others from being checked.
-        let context = |overrides| Context { importer, differentiate: &derive::derivative, overrides, budget };
+        let context = |overrides| Context { importer, differentiate: &derive::derivative_within, overrides, budget };
         let overrides = self.values(overrides, &context(&[]))?;
         let (resolved, found) = program::resolve(&mut self.sources, file, parsed, &context(&overrides));
         self.resolved = resolved;
@@ -213,7 +215,7 @@ fn simplify(scene: &Scene, budget: &Budget) -> Result<(Scene, Vec<Report>), Exce
     for (name, image) in names.into_iter().zip(images) {
         graph.add_output(name, image);
     }
-    let inputs: Vec<Interval> = graph.variables().iter().map(|name| input_range(scene, name)).collect();
+    let inputs = input_ranges(scene, graph.variables());
     let (graph, reports) = passes::run_within(&graph, &inputs, budget)?;
     // The passes keep the outputs in their order.
     let mut results = graph.outputs().iter().map(|&(_, value)| value);
@@ -226,13 +228,16 @@ fn simplify(scene: &Scene, budget: &Budget) -> Result<(Scene, Vec<Report>), Exce
     Ok((scene, reports))
 }
 
-/// Where an input of the scene's graph lies: a coordinate in the domain, a parameter in its range, the time anywhere.
-pub fn input_range(scene: &Scene, name: &str) -> Interval {
-    if let Some(axis) = COORDINATES.iter().position(|coordinate| *coordinate == name) {
-        return scene.domain.get(axis).copied().unwrap_or(Interval::ENTIRE);
-    }
-    let parameter = scene.parameters.iter().find(|parameter| parameter.name == name);
-    parameter.and_then(|parameter| parameter.range).unwrap_or(Interval::ENTIRE)
+/// Where inputs of the scene's graph lie: a coordinate in the domain, a parameter in its range, the time anywhere.
+pub fn input_ranges(scene: &Scene, names: &[String]) -> Vec<Interval> {
+    // Scenes may have very many parameters.
+    let parameters: HashMap<&str, Option<Interval>> =
+        scene.parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.range)).collect();
+    let range = |name: &String| match COORDINATES.iter().position(|coordinate| coordinate == name) {
+        Some(axis) => scene.domain.get(axis).copied().unwrap_or(Interval::ENTIRE),
+        None => parameters.get(name.as_str()).copied().flatten().unwrap_or(Interval::ENTIRE),
+    };
+    names.iter().map(range).collect()
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use crate::program::scene::COORDINATES;
 use crate::program::scene::Scene;
 use crate::program::scene::Shape;
 use crate::session::Artefact;
-use crate::session::input_range;
+use crate::session::input_ranges;
 use crate::syntax::dump;
 
 /// What `imp emit` prints.
@@ -102,7 +102,7 @@ fn gradient(scene: &Scene, shape: &Shape) -> Graph {
     for (coordinate, slope) in coordinates.iter().zip(slopes) {
         graph.add_output(format!("d{}/d{coordinate}", shape.name), slope);
     }
-    let ranges: Vec<Interval> = graph.variables().iter().map(|name| input_range(scene, name)).collect();
+    let ranges = input_ranges(scene, graph.variables());
     passes::run(&graph, &ranges).0
 }
 
@@ -114,7 +114,8 @@ fn over_boxes(scene: &Scene, shape: &Shape, arithmetic: Arithmetic, rounding: Ro
     let field = graph.import(&scene.graph, &[shape.field], &HashMap::new())[0];
     let lanes: Vec<String> = coordinates.iter().map(|&name| name.to_owned()).collect();
     let uniforms: Vec<String> = graph.variables().iter().filter(|name| !lanes.contains(name)).cloned().collect();
-    let promises = uniforms.iter().map(|name| (name.clone(), single(input_range(scene, name)))).collect();
+    let ranges = input_ranges(scene, &uniforms);
+    let promises = uniforms.iter().cloned().zip(ranges.into_iter().map(single)).collect();
     Spec {
         graph: Arc::new(graph),
         symbols: if arithmetic == Arithmetic::Affine { lanes.clone() } else { Vec::new() },

@@ -16,13 +16,13 @@ use crate::syntax::token::Token;
 /// Replaces every `Bar` by `BarOpen` or `BarClose`; reports bars that pair in no way or in several, and then
 /// answers `false`. Brackets must be matched.
 pub fn pair(reporter: &mut Reporter<'_>, tokens: &mut [Lexeme]) -> bool {
-    let before = reporter.found.len();
+    let before = reporter.count();
     let mut lonely = Vec::new();
     stretches(tokens, |tokens, bars| settle(reporter, tokens, bars, &mut lonely));
     if !lonely.is_empty() {
         unpaired(reporter, tokens, &lonely);
     }
-    reporter.found.len() == before
+    reporter.count() == before
 }
 
 /// Hands over the bars between which nothing separates, stretch by stretch.

@@ -45,9 +45,6 @@ mod grammar {
     include!(concat!(env!("OUT_DIR"), "/imp.rs"));
 }
 
-/// Past so many messages the rest is only counted.
-const MAX_REPORTED: usize = 100;
-
 /// Reads a file. Statements with errors are left out of the module; the messages come in the order of the text.
 /// An empty file is an empty module.
 pub fn parse(file: FileId, text: &str) -> (Module, Vec<Diagnostic>) {
@@ -55,21 +52,21 @@ pub fn parse(file: FileId, text: &str) -> (Module, Vec<Diagnostic>) {
     let mut module = Module::default();
     let parser = grammar::StatementParser::new();
     for group in groups(&mut reporter) {
-        let before = reporter.found.len();
+        let before = reporter.count();
         let kind = filter::filter(&mut reporter, &group.tokens)
             .and_then(|tokens| run(&mut reporter, &tokens, |r, input| parser.parse(r, input)));
         if let Some(kind) = &kind {
             kind.expressions(|expr| filter::nodes(&mut reporter, expr));
         }
         if let Some(kind) = kind
-            && reporter.found.len() == before
+            && reporter.count() == before
             && !group.faulty
         {
             let span = reporter.span(group.tokens[0].start, group.tokens[group.tokens.len() - 1].end);
             module.statements.push(Statement { span, doc: group.doc, kind });
         }
     }
-    (module, finish(reporter.found))
+    (module, reporter.finish())
 }
 
 /// Reads one expression, for `imp eval`, the REPL and values on the command line. Line ends count as blanks.
@@ -87,7 +84,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
         reporter.report(diagnostic.at(reporter.span(0, 0), "nothing is written"));
     }
     if !reporter.found.is_empty() {
-        return Err(finish(reporter.found));
+        return Err(reporter.finish());
     }
     let expr = filter::filter(&mut reporter, &lexemes).and_then(|tokens| {
         let parser = grammar::ExpressionParser::new();
@@ -98,7 +95,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Vec<Diagnostic
     }
     match expr {
         Some(expr) if reporter.found.is_empty() => Ok(expr),
-        _ => Err(finish(reporter.found)),
+        _ => Err(reporter.finish()),
     }
 }
 
@@ -118,7 +115,7 @@ fn lex(reporter: &mut Reporter<'_>) -> Lexed {
 fn groups(reporter: &mut Reporter<'_>) -> Vec<Group> {
     let Lexed { lexemes, guesses } = lex(reporter);
     let mut groups = layout::statements(reporter, &lexemes);
-    let mut faults: Vec<u32> = reporter.found.iter().filter_map(|d| Some(d.labels.first()?.span.start)).collect();
+    let mut faults = reporter.places.clone();
     faults.sort_unstable();
     let within = |sorted: &[u32], group: &Group| {
         let (start, end) = (group.tokens[0].start, group.tokens[group.tokens.len() - 1].end);
@@ -163,15 +160,4 @@ fn run<'t, T>(
     let diagnostic = explain::explain(reporter, &stop);
     reporter.report(diagnostic);
     None
-}
-
-/// Messages in the order of the text, and not more of them than anyone reads.
-fn finish(mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    found.sort_by_key(|d| d.labels.first().map(|l| l.span.start));
-    if found.len() > MAX_REPORTED {
-        let more = found.len() - MAX_REPORTED;
-        found.truncate(MAX_REPORTED);
-        found.push(Diagnostic::error(code::TOO_MANY_ERRORS, format!("{more} more errors are not shown")));
-    }
-    found
 }

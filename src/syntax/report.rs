@@ -2,7 +2,9 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::FileId;
+use crate::diagnostic::MAX_SHOWN;
 use crate::diagnostic::Span;
+use crate::diagnostic::shorten;
 use crate::syntax::token::Lexeme;
 
 /// One file's text, and the messages found in it so far.
@@ -11,11 +13,18 @@ pub struct Reporter<'t> {
     pub file: FileId,
     pub text: &'t str,
     pub found: Vec<Diagnostic>,
+    /// How many more there were than are kept.
+    pub dropped: usize,
+    /// Where each of them stands, those that were dropped included.
+    pub places: Vec<u32>,
 }
+
+/// So many messages are kept at least, the first ones by their places; few are shown.
+const KEPT: usize = 2 * MAX_SHOWN;
 
 impl<'t> Reporter<'t> {
     pub fn new(file: FileId, text: &'t str) -> Self {
-        Self { file, text, found: Vec::new() }
+        Self { file, text, found: Vec::new(), dropped: 0, places: Vec::new() }
     }
 
     pub fn span(&self, start: u32, end: u32) -> Span {
@@ -45,14 +54,36 @@ impl<'t> Reporter<'t> {
         }
     }
 
+    /// How many messages there were.
+    pub fn count(&self) -> usize {
+        self.found.len() + self.dropped
+    }
+
+    /// The messages in the order of the text, and not more of them than anyone reads.
+    pub fn finish(mut self) -> Vec<Diagnostic> {
+        self.found.sort_by_key(place);
+        shorten(&mut self.found, self.dropped);
+        self.found
+    }
+
     pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.places.extend(diagnostic.labels.first().map(|label| label.span.start));
         self.found.push(diagnostic);
+        if self.found.len() >= 10 * KEPT {
+            self.found.sort_by_key(place);
+            self.dropped += self.found.len() - KEPT;
+            self.found.truncate(KEPT);
+        }
     }
 
     /// Source text as it goes into an offered edit: on one line, or `None` where it would be too long to help.
     pub fn excerpt(&self, start: u32, end: u32) -> Option<String> {
         one_line(self.slice(start, end))
     }
+}
+
+fn place(diagnostic: &Diagnostic) -> Option<u32> {
+    diagnostic.labels.first().map(|label| label.span.start)
 }
 
 /// `text` with its white space collapsed to single blanks, or `None` where it is too long (or holds a comment) for an offered edit.

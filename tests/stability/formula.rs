@@ -55,7 +55,7 @@ impl Formula {
         let file = sources.add("case", text);
         let budget = Budget::new(&Limits::default());
         let context =
-            Context { importer: &Embedded, differentiate: &derive::derivative, overrides: &[], budget: &budget };
+            Context { importer: &Embedded, differentiate: &derive::derivative_within, overrides: &[], budget: &budget };
         let definitions_file = sources.add("definitions", definitions);
         let (module, found) = syntax::parse(definitions_file, definitions);
         assert!(found.is_empty() || definitions.is_empty(), "{definitions}: {found:?}");

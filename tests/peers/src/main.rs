@@ -110,7 +110,7 @@ fn graph(formula: &Formula) -> (Graph, Value) {
     let file = sources.add(formula.name, formula.source);
     let expression = syntax::parse_expression(file, formula.source).expect("the formula parses");
     let budget = imp::limits::Budget::new(&imp::limits::Limits::default());
-    let context = program::Context { importer: &program::Embedded, differentiate: &imp::derive::derivative, overrides: &[], budget: &budget };
+    let context = program::Context { importer: &program::Embedded, differentiate: &imp::derive::derivative_within, overrides: &[], budget: &budget };
     let resolved = program::resolve_expression(&mut sources, &expression, &["x", "y", "z"], Default::default(), &context)
         .unwrap_or_else(|_| panic!("{} does not resolve", formula.name));
     let mut graph = resolved.graph;

@@ -1,0 +1,3 @@
+fn main() -> Result<(), imp::Error> {
+    imp::build(["../shared/arm.imp"])
+}
