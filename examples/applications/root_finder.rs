@@ -85,6 +85,17 @@ fn zeros(function: &Function, range: Interval) -> Result<Roots, imp::Error> {
     Ok(solver.roots(&[], range, &Options::default(), &Control::default()))
 }
 
+/// The first lines of an answer: a blurred zero leaves many short intervals unknown.
+fn shown(found: &Roots) -> String {
+    const LINES: usize = 32;
+    let text = found.to_string();
+    let mut lines: Vec<&str> = text.lines().take(LINES).collect();
+    if text.lines().nth(LINES).is_some() {
+        lines.push("and more");
+    }
+    lines.join("\n")
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if arguments == ["--time"] {
@@ -95,12 +106,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             Some((formula, range)) => (formula, range.trim().parse::<Interval>().map_err(|e| e.to_string())?),
             None => (argument.as_str(), interval([-100.0, 100.0])?),
         };
-        println!("{formula} = 0 in {range}\n{}\n", zeros(&function(formula)?, range)?);
+        println!("{formula} = 0 in {range}\n{}\n", shown(&zeros(&function(formula)?, range)?));
     }
     if arguments.is_empty() {
         for case in cases() {
             let found = zeros(&function(&case.formula)?, interval(case.range)?)?;
-            println!("{}\n{found}\n", case.name);
+            println!("{}\n{}\n", case.name, shown(&found));
             assert_eq!(found.proved.len(), case.zeros, "{}", case.name);
             assert_eq!(found.is_complete(), case.complete, "{}", case.name);
         }

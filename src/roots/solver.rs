@@ -1,7 +1,7 @@
 //! A search that is compiled once and asked many times.
 //!
 //! The same proofs as in the reference search, eight parts at once. What the kernel leaves undecided down to the resolution,
-//! and where its last bits are not sharp, the reference arithmetic finishes.
+//! and brackets at which it stalls, the reference arithmetic finishes.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -37,8 +37,11 @@ const SKEW: f64 = 0.013_671_875;
 /// Below this part of the interval, or of a number's size, cuts are at simple numbers: what is undecided for so long may be
 /// a pole or the end of a domain, which excludes zeros on both sides of a cut that meets it exactly.
 const NARROW: f64 = 1.0 / 64.0;
-/// A bracket that is wider than so many units in the last place is finished by the reference arithmetic.
-const SHARP: u32 = 4;
+/// A bracket of at most so many units in the last place is narrow enough.
+const SHARP: f64 = 4.0;
+/// One that stalled so many wide is tried on the reference arithmetic. Below that it is the formula's own cancellation that
+/// hides the zero, and the reference gains nothing.
+const BLURRED: f64 = (1u64 << 26) as f64;
 
 /// Finds all zeros of a function of one variable for any values of its parameters.
 ///
@@ -103,7 +106,7 @@ impl Solver {
         }
         let mut run = Run::new(Batch::new(&self.compiled, parameters.iter().copied()), range, options);
         run.search(self.compiled.operations, control);
-        for root in run.roots.proved.iter_mut().filter(|root| !is_sharp(root.bracket)) {
+        for root in run.roots.proved.iter_mut().filter(|root| !is_within(root.bracket, BLURRED)) {
             root.bracket = reference(0).contract(root.bracket);
         }
         let Run { mut open, rest, roots, spent, .. } = run;
@@ -391,7 +394,7 @@ impl<'a> Run<'a> {
         }
         let bracket = stepped(x, answer);
         let root = Root { bracket, ..root };
-        match is_sharp(bracket) {
+        match is_within(bracket, SHARP) {
             true => self.roots.proved.push(root),
             false if halved(bracket, x) => self.queue.push_back(Task::Narrow(root)),
             false => self.queue.push_back(Task::Squeeze(root)),
@@ -402,7 +405,7 @@ impl<'a> Run<'a> {
         let x = root.bracket;
         let bracket = [lane, lane + 1].iter().fold(x, |x, &lane| stepped(x, &self.batch.answer(lane)));
         let root = Root { bracket, ..root };
-        match halved(bracket, x) && !is_sharp(bracket) {
+        match halved(bracket, x) && !is_within(bracket, SHARP) {
             true => self.queue.push_back(Task::Narrow(root)),
             false => self.roots.proved.push(root),
         }
@@ -420,9 +423,9 @@ fn halved(x: Interval, before: Interval) -> bool {
     x.hi() - x.lo() <= 0.5 * (before.hi() - before.lo())
 }
 
-/// Whether an interval is only a few units in the last place wide.
-fn is_sharp(x: Interval) -> bool {
-    x.hi() - x.lo() <= f64::from(SHARP) * f64::EPSILON * x.mag().max(f64::MIN_POSITIVE)
+/// Whether an interval is at most so many units in the last place wide.
+fn is_within(x: Interval, units: f64) -> bool {
+    x.hi() - x.lo() <= units * f64::EPSILON * x.mag().max(f64::MIN_POSITIVE)
 }
 
 /// A number of the interval, near the middle if it is bounded; a simple one, since those are often zeros.

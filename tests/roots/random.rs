@@ -55,7 +55,7 @@ fn searches_of_random_formulas_fit_together() {
     let mut cc = Consts::new().expect("constants");
     let range = interval(-5.0, 5.0);
     let (mut roots, mut sharp, mut signs) = (0, 0, 0);
-    let (mut unknown, mut reference_unknown) = (0, 0);
+    let mut wider = Vec::new();
     for case in 0..cases() {
         let text = formula(&mut rng, 3);
         let expression = expression(&text);
@@ -65,9 +65,12 @@ fn searches_of_random_formulas_fit_together() {
         // Where one has proved a zero, the other has not refuted it.
         let fits = |a: &Roots, b: &Roots| a.proved.iter().all(|root| covered(b, root.bracket));
         assert!(fits(&reference, &compiled) && fits(&compiled, &reference), "{what}");
-        unknown += compiled.unknown.len();
-        reference_unknown += reference.unknown.len();
-        for root in &compiled.proved {
+        let [mine, theirs] = [&compiled, &reference].map(|found| found.unknown.iter().map(|x| x.width()).sum::<f64>());
+        if mine > 4.0 * theirs + 1e-6 {
+            wider.push(format!("{text}: {mine:e} is unknown, {theirs:e} for the reference"));
+        }
+        // A search that ends early leaves brackets as they are.
+        for root in compiled.proved.iter().filter(|root| root.alone.is_some() && !compiled.exhausted) {
             roots += 1;
             sharp += usize::from(root.bracket.width() <= 1e-13 * root.bracket.mag().max(1e-3));
             signs += usize::from(check_signs(root, |x| oracle::sign(graph, f, x, &mut cc), &what));
@@ -97,7 +100,7 @@ fn searches_of_random_formulas_fit_together() {
     }
     assert!(roots >= cases() / 2 && 10 * sharp >= 9 * roots, "{sharp} of {roots} brackets are sharp");
     assert!(2 * signs >= roots, "{signs} of {roots} brackets have signs to compare");
-    assert!(unknown <= 2 * reference_unknown + 4, "{unknown} unknown, {reference_unknown} for the reference");
+    assert!(20 * wider.len() <= cases(), "too much is unknown:\n{}", wider.join("\n"));
 }
 
 /// A zero that is alone has opposite signs at the ends of its bracket, or is one of them. Whether there was something
