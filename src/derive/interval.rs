@@ -189,6 +189,10 @@ impl Lowering<'_> {
     /// Intersects with a range of the domain. Where the two do not meet, the ends are those of a point of the range
     /// and the lane is marked as outside.
     fn clip(&mut self, form: Form, range: Interval) -> Form {
+        if range.is_empty() {
+            (self.outside, self.inside) = (Mask::True, Mask::False);
+            return form;
+        }
         let b = &mut self.b;
         let (lo, hi) = (range.lo(), range.hi());
         let upper = b.up(hi);

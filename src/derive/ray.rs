@@ -7,10 +7,11 @@ use crate::graph::Graph;
 use crate::graph::Value;
 use crate::program::scene::COORDINATES;
 
-/// The inputs of a formula along a ray: origin, direction, ray parameter.
-pub const ORIGIN: [&str; 3] = ["ray_ox", "ray_oy", "ray_oz"];
-pub const DIRECTION: [&str; 3] = ["ray_dx", "ray_dy", "ray_dz"];
-pub const PARAMETER: &str = "ray_t";
+/// The inputs of a formula along a ray: origin, direction, ray parameter. No name of the language has a point in it, so that no
+/// parameter can be one of them.
+pub const ORIGIN: [&str; 3] = ["ray.ox", "ray.oy", "ray.oz"];
+pub const DIRECTION: [&str; 3] = ["ray.dx", "ray.dy", "ray.dz"];
+pub const PARAMETER: &str = "ray.t";
 
 /// Formulas of the point turned into formulas of ray and ray parameter.
 #[derive(Debug, Clone)]

@@ -32,8 +32,8 @@ pub struct Function {
     limits: Limits,
 }
 
-/// The input of a kernel of no variables.
-const UNUSED: &str = "nothing";
+/// The input of a kernel of no variables; no name of the language has a point.
+const UNUSED: &str = "unused.";
 
 /// How a function is compiled.
 #[derive(Debug, Clone, PartialEq)]

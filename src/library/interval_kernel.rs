@@ -14,6 +14,7 @@ use crate::interval::Interval;
 use crate::kernel::Kernel;
 use crate::kernel::Packet;
 use crate::kernel::Real;
+use crate::kernel::verdict;
 use crate::library::Enclosure;
 use crate::library::Error;
 use crate::library::Function;
@@ -166,9 +167,14 @@ impl<T: Real> IntervalKernel<T> {
     /// If the lengths are not those of as many whole groups.
     pub fn enclose_packets(&self, boxes: &[Packet<T>], enclosures: &mut [Packet<T>]) {
         self.shared.code.run(&self.shared.uniforms, boxes, enclosures);
+        if !self.rigorous {
+            let verdicts = enclosures.iter_mut().skip(2).step_by(3);
+            verdicts.for_each(|packet| *packet = Packet::splat(T::from_verdict(0)));
+        }
     }
 
-    /// The code itself, for callers who keep their boxes in packets.
+    /// The code itself. With rounding to nearest its verdicts, which prove nothing then, are as they were computed;
+    /// [`IntervalKernel::enclose_packets`] has none.
     pub fn packets(&self) -> &dyn Kernel<T> {
         &*self.shared.code
     }
@@ -209,7 +215,7 @@ impl<T: Real> IntervalKernel<T> {
                 for (lane, row) in rows.enumerate() {
                     let nowhere = row_of(row).iter().any(|interval| interval.is_empty());
                     take(row, &|output| match nowhere {
-                        true => EMPTY,
+                        true => Enclosure { verdict: Verdict(if self.rigorous { verdict::EMPTY } else { 0 }), ..EMPTY },
                         false => self.enclosure(packets, output, lane),
                     });
                 }
@@ -238,7 +244,7 @@ impl<T: Real> IntervalKernel<T> {
 }
 
 /// What holds over the empty set.
-const EMPTY: Enclosure = Enclosure { interval: Interval::EMPTY, verdict: Verdict(crate::kernel::verdict::EMPTY) };
+const EMPTY: Enclosure = Enclosure { interval: Interval::EMPTY, verdict: Verdict(verdict::EMPTY) };
 
 /// An interval as kernels take it: its lower end negated, and its upper end, rounded outward. Of the empty set both are NaN.
 fn ends<T: Real>(interval: Interval) -> [T; 2] {

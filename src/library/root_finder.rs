@@ -3,6 +3,8 @@
 use std::fmt;
 
 use crate::control::Control;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::code;
 use crate::interval::Interval;
 use crate::library::Error;
 use crate::library::Function;
@@ -40,15 +42,14 @@ struct Values {
 
 impl Values {
     fn set(&mut self, function: &Function, name: &str, value: Interval) -> Result<(), Error> {
-        if let Err(error) = parameter(function, name, value)
-            && !(function.variables().iter().any(|variable| variable == name) && self.names.iter().any(|n| n == name))
-        {
-            return Err(error);
+        if function.parameters().iter().any(|parameter| parameter.name == name) {
+            parameter(function, name, value)?;
         }
-        let place = self.names.iter().position(|other| other == name);
-        place
-            .map(|place| self.intervals[place] = value)
-            .ok_or_else(|| Error::UnknownVariable { name: name.to_owned(), known: self.names.clone() })
+        match self.names.iter().position(|other| other == name) {
+            Some(place) => self.intervals[place] = value,
+            None => return Err(Error::UnknownVariable { name: name.to_owned(), known: self.names.clone() }),
+        }
+        Ok(())
     }
 }
 
@@ -62,10 +63,12 @@ impl Function {
         let Some(place) = self.variables().iter().position(|other| other == variable) else {
             return Err(Error::UnknownVariable { name: variable.to_owned(), known: self.variables().to_vec() });
         };
+        self.check_names()?;
         let ranges = self.ranges();
         let bounds: Vec<(&str, Interval)> = ranges.iter().map(|(name, range)| (name.as_str(), *range)).collect();
-        let backend = session::Within(&self.budget());
-        let solver = Solver::new(self.graph(), self.values()[0], &self.inputs()[place], &bounds, &backend)?;
+        let budget = self.budget();
+        let (backend, input) = (session::Within(&budget), &self.inputs()[place]);
+        let solver = Solver::within(self.graph(), self.values()[0], input, &bounds, &backend, &budget)?;
         let values = self.values_of(solver.parameters());
         Ok(RootFinder { solver, function: self.clone(), values, options: Options::default() })
     }
@@ -79,11 +82,13 @@ impl Function {
         if !(1..=3).contains(&dimension) {
             return Err(Error::Length { what: "variables of a function along a line", expected: 3, found: dimension });
         }
+        self.check_names()?;
         let ranges = self.ranges();
         let bounds: Vec<(&str, Interval)> = ranges.iter().map(|(name, range)| (name.as_str(), *range)).collect();
         let coordinates: Vec<&str> = self.inputs().iter().map(String::as_str).collect();
-        let backend = session::Within(&self.budget());
-        let solver = RaySolver::new(self.graph(), self.values()[0], &coordinates, &bounds, &backend)?;
+        let budget = self.budget();
+        let backend = session::Within(&budget);
+        let solver = RaySolver::within(self.graph(), self.values()[0], &coordinates, &bounds, &backend, &budget)?;
         let values = self.values_of(solver.parameters());
         Ok(RayFinder { solver, function: self.clone(), values, options: Options::default() })
     }
@@ -95,6 +100,14 @@ impl Function {
     pub fn roots(&self, range: Interval) -> Result<Roots, Error> {
         check("variables of the function", 1, self.variables().len())?;
         Ok(self.root_finder(&self.variables()[0])?.roots(range))
+    }
+
+    /// Refuses what could not be told apart by name.
+    fn check_names(&self) -> Result<(), Error> {
+        let both = self.parameters().iter().find(|parameter| self.variables().contains(&parameter.name));
+        let Some(both) = both else { return Ok(()) };
+        let title = format!("`{}` has a variable and a parameter of the name `{}`", self.name(), both.name);
+        Err(Diagnostic::error(code::DUPLICATE_NAME, title).help("give the variable another name").into())
     }
 
     /// The parameters' ranges.

@@ -168,6 +168,14 @@ impl Program {
                 self.items.push(Item { name: name.clone(), file, statement, broken: false });
             }
         }
+        for statement in &module.statements {
+            let StatementKind::Fn { params, .. } = &statement.kind else { continue };
+            for (i, param) in params.iter().enumerate() {
+                if let Some(first) = params[..i].iter().find(|first| first.name.text == param.name.text) {
+                    diagnostics.push(errors::duplicate_name(&param.name.text, param.name.span, first.name.span));
+                }
+            }
+        }
         self.files.push(ProgramFile { id, module: Rc::new(module), origin, own, imports: Vec::new() });
         file
     }

@@ -320,7 +320,7 @@ pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]
             let range = range.as_ref().map(|(lo, hi)| lowerer.range(lo, hi));
             (number, range)
         });
-        let (Some(number), range) = written else { continue };
+        let (Some(mut number), range) = written else { continue };
         let range = match range {
             Some(None) => continue,
             Some(range) => range,
@@ -335,6 +335,8 @@ pub(super) fn parameters(lowerer: &mut Lowerer, overrides: &[(String, Interval)]
                 value.span,
             ));
         }
+        // The number lies in both, even where its enclosure sticks out by a rounding.
+        number = range.map_or(number, |range| number.intersect(range));
         places.insert(&name.text, name.span);
         found.push((Parameter { name: name.text.clone(), value: number, range }, name.span));
     }

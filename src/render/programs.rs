@@ -29,8 +29,8 @@ use crate::program::scene::ShapeKind;
 use crate::render::batch::Program;
 
 /// The inputs of centred forms and of values at a cell's end.
-const CENTRE: &str = "ray_m";
-const END: &str = "ray_e";
+const CENTRE: &str = "ray.m";
+const END: &str = "ray.e";
 
 /// Directions are scaled to 1 along an axis of at least 0.3 of their length (`camera`), so no component exceeds this.
 const DIRECTION_BOUND: f64 = 4.0;

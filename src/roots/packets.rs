@@ -16,6 +16,7 @@ use crate::kernel::Kernel;
 use crate::kernel::Packet;
 use crate::kernel::Real;
 use crate::kernel::verdict;
+use crate::limits::Budget;
 use crate::passes;
 use crate::roots::problem::Problem;
 
@@ -28,8 +29,8 @@ pub const CAPACITY: usize = GROUPS * LANES;
 
 /// Two slots each for a part of the interval and for the point inside.
 const INPUT_SLOTS: usize = 4;
-/// The point inside, as an input of the graph.
-const CENTRE: &str = "roots_centre";
+/// The point inside, as an input of the graph; no name of the language has a point.
+const CENTRE: &str = "roots.centre";
 
 /// Output slots, in the order in which [`Compiled::new`] asks for them; from `FACTORS` on one slot a factor.
 const F: usize = 0;
@@ -51,8 +52,13 @@ impl Compiled {
     /// `bounds` are promises about inputs.
     ///
     /// # Errors
-    /// What the backend says of the program.
-    pub fn new(problem: &Problem, bounds: &[(&str, Interval)], backend: &dyn Backend) -> Result<Self, Diagnostic> {
+    /// What the backend says of the program; if the budget is exceeded.
+    pub fn new(
+        problem: &Problem,
+        bounds: &[(&str, Interval)],
+        backend: &dyn Backend,
+        budget: &Budget,
+    ) -> Result<Self, Diagnostic> {
         let mut graph = problem.graph.clone();
         let names = graph.variables().to_vec();
         let unknown = &names[problem.variable];
@@ -77,7 +83,8 @@ impl Compiled {
         let promise = |name: &String| bound(if name == CENTRE { unknown } else { name });
         let known: Vec<Option<Interval>> = graph.variables().iter().map(promise).collect();
         let ranges: Vec<Interval> = known.iter().map(|range| range.unwrap_or(Interval::ENTIRE)).collect();
-        let (graph, _) = passes::run(&graph, &ranges);
+        budget.nodes(graph.len())?;
+        let (graph, _) = passes::run_within(&graph, &ranges, budget)?;
         let promises = graph.variables().iter().cloned().zip(known).filter_map(|(name, range)| Some((name, range?)));
         let promises = promises.collect();
         let results: Vec<Value> = graph.outputs()[others..].iter().map(|&(_, value)| value).collect();

@@ -4,6 +4,8 @@ use crate::derive;
 use crate::graph::Graph;
 use crate::graph::Op;
 use crate::graph::Value;
+use crate::limits::Budget;
+use crate::limits::Exceeded;
 
 /// What every search for the same function shares.
 #[derive(Debug)]
@@ -19,19 +21,25 @@ pub struct Problem {
 
 impl Problem {
     /// Zeros in the variable of that name, which need not occur.
-    pub fn new(graph: &Graph, f: Value, variable: &str) -> Self {
+    ///
+    /// # Errors
+    /// If its derivative exceeds the budget.
+    pub fn new(graph: &Graph, f: Value, variable: &str, budget: &Budget) -> Result<Self, Exceeded> {
         let mut graph = graph.clone();
         let x = graph.var(variable);
-        let slope = derive::derivative(&mut graph, f, x);
+        let slope = derive::derivative_within(&mut graph, f, x, budget)?;
         let factors = factors(&mut graph, f);
         let variable = graph.variables().iter().position(|name| name == variable).unwrap_or_default();
-        Self { graph, f, slope, factors, variable }
+        Ok(Self { graph, f, slope, factors, variable })
     }
 
     /// Zeros in t on the line o + t d of the inputs named, at most three of them.
-    pub fn along_ray(graph: &Graph, f: Value, coordinates: &[&str]) -> Self {
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn along_ray(graph: &Graph, f: Value, coordinates: &[&str], budget: &Budget) -> Result<Self, Exceeded> {
         let ray = derive::along_line(graph, &[f], coordinates);
-        Self::new(&ray.graph, ray.roots[0], derive::PARAMETER)
+        Self::new(&ray.graph, ray.roots[0], derive::PARAMETER, budget)
     }
 }
 

@@ -18,6 +18,8 @@ use crate::graph::Value;
 use crate::interval::Decorated;
 use crate::interval::Decoration;
 use crate::interval::Interval;
+use crate::limits::Budget;
+use crate::limits::Limits;
 use crate::roots::answer::Options;
 use crate::roots::answer::Root;
 use crate::roots::answer::Roots;
@@ -58,7 +60,9 @@ impl Search {
     /// # Panics
     /// If the boxes are not as many as the variables.
     pub fn new(graph: &Graph, root: Value, boxes: &[Decorated], variable: usize) -> Self {
-        let problem = Problem::new(graph, root, &graph.variables()[variable]);
+        let budget = Budget::new(&Limits::unlimited());
+        let problem = Problem::new(graph, root, &graph.variables()[variable], &budget);
+        let problem = problem.unwrap_or_else(|_| unreachable!("there is no limit"));
         Self::of(Arc::new(problem), boxes.to_vec(), 0)
     }
 
@@ -77,7 +81,9 @@ impl Search {
         direction: &[f64],
     ) -> Self {
         assert_eq!(graph.variables().len(), boxes.len(), "one box for each variable");
-        let problem = Problem::along_ray(graph, root, coordinates);
+        let budget = Budget::new(&Limits::unlimited());
+        let problem = Problem::along_ray(graph, root, coordinates, &budget);
+        let problem = problem.unwrap_or_else(|_| unreachable!("there is no limit"));
         let value = |name: &String| {
             let at = |names: &[&str]| names.iter().position(|n| n == name);
             match (at(&derive::ORIGIN), at(&derive::DIRECTION), graph.variables().iter().position(|n| n == name)) {
@@ -195,7 +201,7 @@ impl Search {
         let Some(slope) = self.slope(x, value).filter(|_| x.is_bounded() && !x.is_singleton()) else {
             return Finding::Undecided;
         };
-        let Some(newton) = self.newton(x, slope) else { return Finding::Refuted };
+        let Some((newton, into)) = self.newton(x, slope) else { return Finding::Refuted };
         if slope.contains(0.0) {
             return Finding::Undecided;
         }
@@ -210,26 +216,28 @@ impl Search {
             }
             _ => {}
         }
-        if newton.contains_in_interior(x) {
-            // The Newton operator maps the interval into its interior: there is a zero, and the slope allows one only.
+        if into {
+            // The Newton operator maps the interval into itself: there is a zero, and the slope allows one only.
             return Finding::Root(Root { bracket: self.contract(newton), alone: Some(x) });
         }
         if newton.width() < 0.75 * x.width() { Finding::Narrowed(newton) } else { Finding::Undecided }
     }
 
-    /// What a Newton step leaves of an interval on which the function has the given slopes; `None` if there is no zero.
-    fn newton(&mut self, x: Interval, slope: Interval) -> Option<Interval> {
+    /// What a Newton step leaves of an interval on which the function has the given slopes, and whether the step leads into the
+    /// interval; `None` if there is no zero.
+    fn newton(&mut self, x: Interval, slope: Interval) -> Option<(Interval, bool)> {
         let middle = x.mid();
         let value = self.enclose(self.problem.f, Interval::point(middle)).interval();
         // Mean value theorem: 0 = f(root) is in f(middle) + slope (root - middle).
         let step = if slope.contains(0.0) {
             let values = value + slope * (x - Interval::point(middle));
-            return values.contains(0.0).then_some(x);
+            return values.contains(0.0).then_some((x, false));
         } else {
             value / slope
         };
-        let left = (Interval::point(middle) - step).intersect(x);
-        (!left.is_empty()).then_some(left)
+        let newton = Interval::point(middle) - step;
+        let left = newton.intersect(x);
+        (!left.is_empty()).then_some((left, x.contains_interval(newton)))
     }
 
     /// Newton steps on an interval that holds exactly one zero, while they help.
@@ -238,7 +246,7 @@ impl Search {
             let value = self.enclose(self.problem.f, x);
             let Some(slope) = self.slope(x, value).filter(|slope| !slope.contains(0.0)) else { break };
             match self.newton(x, slope) {
-                Some(narrower) if narrower.width() < x.width() => x = narrower,
+                Some((narrower, _)) if narrower.width() < x.width() => x = narrower,
                 _ => break,
             }
         }

@@ -13,6 +13,8 @@ use crate::graph::Value;
 use crate::interval::Decorated;
 use crate::interval::Interval;
 use crate::kernel::Backend;
+use crate::limits::Budget;
+use crate::limits::Limits;
 use crate::roots::answer::Options;
 use crate::roots::answer::Root;
 use crate::roots::answer::Roots;
@@ -70,11 +72,31 @@ impl Solver {
         bounds: &[(&str, Interval)],
         backend: &dyn Backend,
     ) -> Result<Self, Diagnostic> {
-        Self::of(Problem::new(graph, value, variable), bounds, backend)
+        Self::within(graph, value, variable, bounds, backend, &Budget::new(&Limits::unlimited()))
     }
 
-    fn of(problem: Problem, bounds: &[(&str, Interval)], backend: &dyn Backend) -> Result<Self, Diagnostic> {
-        let compiled = Compiled::new(&problem, bounds, backend)?;
+    /// The same under a budget.
+    ///
+    /// # Errors
+    /// As [`Solver::new`], and if the budget is exceeded.
+    pub fn within(
+        graph: &Graph,
+        value: Value,
+        variable: &str,
+        bounds: &[(&str, Interval)],
+        backend: &dyn Backend,
+        budget: &Budget,
+    ) -> Result<Self, Diagnostic> {
+        Self::of(Problem::new(graph, value, variable, budget)?, bounds, backend, budget)
+    }
+
+    fn of(
+        problem: Problem,
+        bounds: &[(&str, Interval)],
+        backend: &dyn Backend,
+        budget: &Budget,
+    ) -> Result<Self, Diagnostic> {
+        let compiled = Compiled::new(&problem, bounds, backend, budget)?;
         let bound = |name: &str| bounds.iter().find(|(n, _)| *n == name).map_or(Interval::ENTIRE, |&(_, range)| range);
         let mut parameters = problem.graph.variables().to_vec();
         let promised = bound(&parameters.remove(problem.variable));
@@ -140,7 +162,26 @@ impl RaySolver {
         bounds: &[(&str, Interval)],
         backend: &dyn Backend,
     ) -> Result<Self, Diagnostic> {
-        let solver = Solver::of(Problem::along_ray(graph, value, coordinates), bounds, backend)?;
+        Self::within(graph, value, coordinates, bounds, backend, &Budget::new(&Limits::unlimited()))
+    }
+
+    /// The same under a budget.
+    ///
+    /// # Errors
+    /// As [`RaySolver::new`], and if the budget is exceeded.
+    ///
+    /// # Panics
+    /// If there are more than three coordinates.
+    pub fn within(
+        graph: &Graph,
+        value: Value,
+        coordinates: &[&str],
+        bounds: &[(&str, Interval)],
+        backend: &dyn Backend,
+        budget: &Budget,
+    ) -> Result<Self, Diagnostic> {
+        let problem = Problem::along_ray(graph, value, coordinates, budget)?;
+        let solver = Solver::of(problem, bounds, backend, budget)?;
         Ok(Self { solver, coordinates: coordinates.len() })
     }
 
