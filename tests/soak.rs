@@ -30,6 +30,7 @@ use imp::IntervalKernel;
 use imp::Options;
 use imp::PointKernel;
 use imp::Program;
+use imp::derive::Precision;
 use imp::interpret::Interpreter;
 use imp::kernel::Backend;
 use imp::kernel::Kernel;
@@ -86,7 +87,7 @@ fn compile(seed: u64) -> Job {
     let program = Program::parse(&text).unwrap_or_else(|error| panic!("{text}\n{error}"));
     let function = program.function("f").unwrap();
     let options = if seed.is_multiple_of(3) { Options::with_gradient() } else { Options::default() };
-    let spec = function.box_spec(&options).unwrap();
+    let spec = function.box_spec(&options, Precision::Double).unwrap();
     Job {
         seed,
         double: function.interval_kernel(&options).unwrap(),

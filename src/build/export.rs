@@ -17,7 +17,6 @@ use crate::codegen::object::Routine;
 use crate::codegen::object::Target;
 use crate::codegen::object::Unit;
 use crate::derive::Precision;
-use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::Severity;
 use crate::diagnostic::code;
@@ -197,7 +196,7 @@ fn exported(program: &Program, function: &Function, precision: Precision) -> Exp
             Precision::Single => f32::nearest(parameter.value.mid()).to_f64(),
             Precision::Double => parameter.value.mid(),
         },
-        range: fitted(parameter.range.unwrap_or(Interval::ENTIRE), precision),
+        range: Function::range_in(parameter, precision),
     });
     Exported {
         name: Name::new(function.name()),
@@ -215,10 +214,10 @@ fn routine(interface: &Interface, function: &Function, exported: &Exported, kern
         gradient: kernel.has_gradient(),
         ..Options::default()
     };
-    let spec = if kernel.at_points() { function.point_spec(&options)? } else { function.box_spec(&options)? };
-    // A parameter of single precision may lie outside of its range by a rounding.
-    let promises = spec.promises.iter().map(|(name, range)| (name.clone(), fitted(*range, precision))).collect();
-    let spec = Spec { promises, ..spec };
+    let spec = match kernel.at_points() {
+        true => function.point_spec(&options, precision)?,
+        false => function.box_spec(&options, precision)?,
+    };
     let defaults = match kernel.at_points() {
         true => exported.parameters.iter().map(|parameter| parameter.point).collect(),
         false => exported.parameters.iter().flat_map(|p| [p.value.lo(), p.value.hi()]).collect(),

@@ -214,6 +214,13 @@ impl Interface {
                     None => continue,
                 }
             }
+            let mut fields: BTreeMap<String, &str> = BTreeMap::new();
+            for name in function.parameters.iter().map(|parameter| &parameter.name) {
+                let field = names::in_rust(&name.identifier);
+                if let Some(other) = fields.insert(field.clone(), &name.written) {
+                    return Err(collision(&field, &format!("`{other}`"), &format!("`{}`", name.written)));
+                }
+            }
             let mut modules: BTreeMap<String, String> = BTreeMap::new();
             for name in function.variables.iter().chain(function.parameters.iter().map(|p| &p.name)) {
                 let about = format!("`{}`", name.written);

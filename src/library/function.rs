@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::derive;
 use crate::derive::Arithmetic;
 use crate::derive::Output;
+use crate::derive::Precision;
 use crate::derive::Rounding;
 use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
@@ -13,6 +14,7 @@ use crate::diagnostic::Span;
 use crate::graph::Graph;
 use crate::graph::Value;
 use crate::interval::Interval;
+use crate::kernel::Real;
 use crate::library::Error;
 use crate::library::IntervalKernel;
 use crate::library::PointKernel;
@@ -182,9 +184,9 @@ impl Function {
     ///
     /// # Errors
     /// As [`Function::intervals`].
-    pub fn box_spec(&self, options: &Options) -> Result<Spec, Error> {
+    pub fn box_spec(&self, options: &Options, precision: Precision) -> Result<Spec, Error> {
         let arithmetic = if options.affine { Arithmetic::Affine } else { Arithmetic::Interval };
-        let mut spec = self.spec(options, arithmetic, Output::Enclosure)?;
+        let mut spec = self.spec(options, precision, arithmetic, Output::Enclosure)?;
         if options.affine {
             spec.symbols = spec.inputs.iter().take(3).cloned().collect();
         }
@@ -195,8 +197,8 @@ impl Function {
     ///
     /// # Errors
     /// As [`Function::intervals`].
-    pub fn point_spec(&self, options: &Options) -> Result<Spec, Error> {
-        let spec = self.spec(options, Arithmetic::Point, Output::Value)?;
+    pub fn point_spec(&self, options: &Options, precision: Precision) -> Result<Spec, Error> {
+        let spec = self.spec(options, precision, Arithmetic::Point, Output::Value)?;
         Ok(Spec { rounding: Rounding::Nearest, ..spec })
     }
 
@@ -205,7 +207,26 @@ impl Function {
         Budget::new(&self.limits)
     }
 
-    fn spec(&self, options: &Options, arithmetic: Arithmetic, output: fn(Value) -> Output) -> Result<Spec, Error> {
+    /// Where a parameter may lie in kernels of a precision: its declared range, or all reals, rounded outward to that precision.
+    pub fn range_in(parameter: &Parameter, precision: Precision) -> Interval {
+        let range = parameter.range.unwrap_or(Interval::ENTIRE);
+        match precision {
+            Precision::Double => range,
+            Precision::Single => {
+                let (lo, hi) = (f32::down(range.lo()).to_f64(), f32::up(range.hi()).to_f64());
+                Interval::new(lo, hi).unwrap_or(Interval::ENTIRE)
+            }
+        }
+    }
+
+    /// Passes, promises and whatever a caller checks hold for the same ranges of parameters: those of the precision.
+    fn spec(
+        &self,
+        options: &Options,
+        precision: Precision,
+        arithmetic: Arithmetic,
+        output: fn(Value) -> Output,
+    ) -> Result<Spec, Error> {
         let (resolved, budget) = (&self.resolved, &self.budget());
         if let Some((name, _)) = options.domain.iter().find(|(name, _)| !resolved.variables.contains(name)) {
             return Err(Error::UnknownVariable { name: name.clone(), known: resolved.variables.clone() });
@@ -215,7 +236,7 @@ impl Function {
             given.fold(Interval::ENTIRE, |all, (_, range)| all.intersect(*range))
         };
         let mut ranges: Vec<Interval> = resolved.variables.iter().map(range).collect();
-        ranges.extend(resolved.parameters.iter().map(|parameter| parameter.range.unwrap_or(Interval::ENTIRE)));
+        ranges.extend(resolved.parameters.iter().map(|parameter| Self::range_in(parameter, precision)));
 
         let mut graph = resolved.graph.clone();
         let variables: Vec<Value> = resolved.inputs.iter().map(|name| graph.var(name)).collect();
@@ -240,7 +261,7 @@ impl Function {
             inputs.push(UNUSED.to_owned());
             graph.var(UNUSED);
         }
-        let promised = resolved.parameters.iter().filter_map(|p| Some((p.name.clone(), p.range?)));
+        let promised = resolved.parameters.iter().map(|p| (p.name.clone(), Self::range_in(p, precision)));
         Ok(Spec {
             inputs,
             uniforms: resolved.parameters.iter().map(|parameter| parameter.name.clone()).collect(),

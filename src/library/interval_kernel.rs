@@ -45,7 +45,7 @@ impl<T: Real> IntervalKernel<T> {
     where
         T: Compile,
     {
-        let spec = function.box_spec(options)?;
+        let spec = function.box_spec(options, T::PRECISION)?;
         let code = T::compile(&spec, &function.budget())?;
         let uniforms = function.parameters().iter().flat_map(|parameter| ends::<T>(parameter.value)).collect();
         let outputs = function.outputs_of(options).into();

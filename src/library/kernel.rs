@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::derive::Precision;
 use crate::derive::Spec;
 use crate::diagnostic::Diagnostic;
 use crate::interval::Interval;
@@ -17,6 +18,9 @@ use crate::session;
 
 /// The two formats for which kernels are compiled: `f64` and `f32`.
 pub trait Compile: Real + sealed::Sealed {
+    /// The precision of this type.
+    const PRECISION: Precision;
+
     /// Compiles a spec for this machine.
     ///
     /// # Errors
@@ -31,12 +35,16 @@ mod sealed {
 }
 
 impl Compile for f64 {
+    const PRECISION: Precision = Precision::Double;
+
     fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<f64>>, Diagnostic> {
         session::Within(budget).compile_f64(spec)
     }
 }
 
 impl Compile for f32 {
+    const PRECISION: Precision = Precision::Single;
+
     fn compile(spec: &Spec, budget: &Budget) -> Result<Arc<dyn Kernel<f32>>, Diagnostic> {
         session::Within(budget).compile_f32(spec)
     }

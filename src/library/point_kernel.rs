@@ -27,7 +27,7 @@ impl<T: Real> PointKernel<T> {
     where
         T: Compile,
     {
-        let spec = function.point_spec(options)?;
+        let spec = function.point_spec(options, T::PRECISION)?;
         let code = T::compile(&spec, &function.budget())?;
         let uniforms = function.parameters().iter().map(|parameter| T::nearest(parameter.value.mid())).collect();
         let outputs = function.outputs_of(options).into();
