@@ -2,9 +2,10 @@
 //! interpreter, memory and mappings stay flat, no page is ever writable and executable, and code is unmapped when the last
 //! kernel goes.
 //!
-//! `IMP_SOAK=10000 cargo test --release --test soak -- --nocapture` is the long one. The short one also runs under
-//! `valgrind target/debug/deps/soak-*`, where results are compared with some slack because Valgrind rounds to nearest only, and
-//! with the address sanitizer, whose `ASAN_OPTIONS=quarantine_size_mb=1` keeps freed memory from being mistaken for growth.
+//! `IMP_SOAK=10000 cargo test --release --test soak -- --nocapture` is the long one. With the address sanitizer
+//! (`RUSTFLAGS=-Zsanitizer=address`) `ASAN_OPTIONS=quarantine_size_mb=1` keeps freed memory from being mistaken for growth.
+//! Valgrind rounds to nearest only, so that results are compared with some slack there; it does not know AVX-512, which
+//! the C part of `core-math` uses on machines that have it.
 #![cfg(all(target_os = "linux", target_arch = "x86_64"))]
 
 use std::env;

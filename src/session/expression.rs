@@ -500,7 +500,7 @@ mod tests {
             |text: &str| workspace.expression(&Snippet::whole("line 2", text), &["x"], Reading::Value).map(|_| ());
         assert!(expression("f(f(x))").is_ok());
         let found = expression("f(f(f(f(f(x)))))").unwrap_err();
-        assert_eq!(found.diagnostics[0].code, code::LARGER_THAN_ALLOWED);
+        assert_eq!(found.diagnostics[0].code, code::TOO_MUCH_EXPANSION);
     }
 
     #[test]
