@@ -167,8 +167,10 @@ impl<const N: usize, F: Objective<N>> Search<'_, N, F> {
         let (at_middles, slopes) = (&mut values[..groups], &mut slopes[..groups * (N + 1)]);
         self.f.slopes(part.len(), sides, slopes);
         self.f.values(part.len(), middles, at_middles);
-        // A bound that is no number is passed over.
-        let lanes = at_middles.iter().flat_map(|[_, hi, _]| hi.0);
+        // Only where the function is proved to have a value is its upper bound one of the minimum.
+        let defined = |bits: f64| bits.verdict() & verdict::CONTINUOUS != 0;
+        let known_at = |(hi, bits): (f64, f64)| if defined(bits) { hi } else { f64::INFINITY };
+        let lanes = at_middles.iter().flat_map(|[_, hi, bits]| hi.0.into_iter().zip(bits.0)).map(known_at);
         let upper = lanes.take(part.len()).fold(known, f64::min);
 
         children.clear();
