@@ -23,19 +23,17 @@ fn gcc(folder: &Path, arguments: &[&str]) {
 
 /// The highest level of this machine.
 fn machine() -> Level {
-    let has_v3 = ["avx2", "fma", "bmi1", "bmi2", "lzcnt"].map(|feature| match feature {
-        "avx2" => is_x86_feature_detected!("avx2"),
-        "fma" => is_x86_feature_detected!("fma"),
-        "bmi1" => is_x86_feature_detected!("bmi1"),
-        "bmi2" => is_x86_feature_detected!("bmi2"),
-        _ => is_x86_feature_detected!("lzcnt"),
-    });
+    let has_v3 = is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("fma")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("lzcnt");
     let has_v4 = is_x86_feature_detected!("avx512f")
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512cd")
         && is_x86_feature_detected!("avx512bw")
         && is_x86_feature_detected!("avx512vl");
-    match (has_v3.iter().all(|&has| has), has_v4) {
+    match (has_v3, has_v4) {
         (true, true) => Level::V4,
         (true, false) => Level::V3,
         (false, _) => Level::V2,
@@ -72,6 +70,34 @@ fn objects_for_other_machines() {
     for (name, target) in targets {
         fs::write(folder.join(name), emit(&fixture::unit(&cases, target)).unwrap()).unwrap();
     }
+}
+
+#[test]
+fn equal_units_give_equal_bytes() {
+    let cases = fixture::cases();
+    for target in [Target::X86_64(ALL.to_vec()), Target::Aarch64] {
+        let unit = fixture::unit(&cases[..10], target);
+        assert_eq!(emit(&unit).unwrap(), emit(&unit).unwrap());
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_an_error() {
+    let cases = fixture::cases();
+    let good = || fixture::unit(&cases[..1], Target::X86_64(ALL.to_vec()));
+    assert!(emit(&good()).is_ok());
+    let mut bad = good();
+    bad.target = Target::X86_64(Vec::new());
+    assert!(emit(&bad).is_err(), "no level");
+    let mut bad = good();
+    bad.routines.push(bad.routines[0].clone());
+    assert!(emit(&bad).is_err(), "one name twice");
+    let mut bad = good();
+    bad.routines[0].variables += 1;
+    assert!(emit(&bad).is_err(), "a coordinate that the program has not");
+    let mut bad = good();
+    bad.abi = "unit_level".to_owned();
+    assert!(emit(&bad).is_err(), "a name of a function for data");
 }
 
 #[test]

@@ -162,19 +162,21 @@ pub fn isa(program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
 pub fn isa_for(machine: Machine, program: &LaneProgram) -> Result<OwnedTargetIsa, Diagnostic> {
     let pic = if machine == Machine::Host { "false" } else { "true" };
     let allocator = if is_simple(program) { "single_pass" } else { "backtracking" };
-    instructions(machine, &[("regalloc_algorithm", allocator), ("is_pic", pic)])
+    instructions(machine, &[("opt_level", "none"), ("regalloc_algorithm", allocator), ("is_pic", pic)])
 }
 
 /// A machine's instruction set for the code around kernels: it may take much stack, so it touches each of its pages in turn
-/// and cannot pass over the page that guards the stack's end.
+/// and cannot pass over the page that guards the stack's end. That code rounds nothing, so the optimiser may see it.
 pub fn isa_around(machine: Machine) -> Result<OwnedTargetIsa, Diagnostic> {
-    instructions(machine, &[("is_pic", "true"), ("enable_probestack", "true"), ("probestack_strategy", "inline")])
+    let probing = [("enable_probestack", "true"), ("probestack_strategy", "inline")];
+    let flags = [("opt_level", "speed"), ("is_pic", "true")];
+    instructions(machine, &[flags, probing].concat())
 }
 
 fn instructions(machine: Machine, own: &[(&str, &str)]) -> Result<OwnedTargetIsa, Diagnostic> {
     let mut flags = settings::builder();
     let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
-    let common = [("opt_level", "none"), ("enable_verifier", verifier), ("use_colocated_libcalls", "false")];
+    let common = [("enable_verifier", verifier), ("use_colocated_libcalls", "false")];
     for &(name, value) in common.iter().chain(own) {
         flags.set(name, value).map_err(|error| internal(&error))?;
     }

@@ -106,7 +106,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-fn formulas(arithmetic: Arithmetic) -> [(&'static str, Spec); 4] {
+fn formulas(arithmetic: Arithmetic) -> [(&'static str, Spec); 6] {
     // A product of differences with a parameter in each, its gradient, and a domain that most boxes leave.
     let mut g = Graph::new();
     let [x, y, p, q] = ["x", "y", "p", "pq"].map(|name| g.var(name));
@@ -132,7 +132,41 @@ fn formulas(arithmetic: Arithmetic) -> [(&'static str, Spec); 4] {
         let product = g.mul(a, b);
         sum = g.add(sum, product);
     }
-    [("slopes", slopes), ("inside", inside), ("unrounded", unrounded), ("wide", spec(g, &[sum], arithmetic))]
+    let wide = spec(g, &[sum], arithmetic);
+
+    // So many values live at once that kernels take more stack than a page.
+    let mut g = Graph::new();
+    let [x, y] = ["x", "y"].map(|name| g.var(name));
+    let powers: Vec<Value> = (1..200)
+        .map(|i| {
+            let factor = g.int(i);
+            let scaled = g.mul(x, factor);
+            g.add(scaled, y)
+        })
+        .collect();
+    let (mut sum, mut product) = (powers[0], powers[0]);
+    for &power in powers.iter().rev() {
+        sum = g.add(sum, power);
+    }
+    for &power in &powers[..20] {
+        product = g.mul(product, power);
+    }
+    let deep_root = g.mul(sum, product);
+    let deep = spec(g, &[deep_root], arithmetic);
+
+    // No variable at all.
+    let mut g = Graph::new();
+    let seven = g.int(7);
+    let root = g.unary(Op::Sqrt, seven);
+    let constant = spec(g, &[root], arithmetic);
+    [
+        ("slopes", slopes),
+        ("inside", inside),
+        ("unrounded", unrounded),
+        ("wide", wide),
+        ("deep", deep),
+        ("constant", constant),
+    ]
 }
 
 /// The unit of these cases.
@@ -169,14 +203,19 @@ pub fn write(cases: &[Case], folder: &Path) {
             case.rows,
         )
         .unwrap();
+        // A kernel in memory counts its groups by their inputs.
+        let mut spec = case.spec.clone();
+        if spec.inputs.is_empty() {
+            spec.inputs.push("unused".to_owned());
+        }
         match program.precision {
             Precision::Single => {
-                data(case, &*Compiler.compile_f32(&case.spec).unwrap(), &mut bytes, |x, out| {
+                data(case, &*Compiler.compile_f32(&spec).unwrap(), &mut bytes, |x, out| {
                     out.extend(x.to_le_bytes());
                 });
             }
             Precision::Double => {
-                data(case, &*Compiler.compile_f64(&case.spec).unwrap(), &mut bytes, |x, out| {
+                data(case, &*Compiler.compile_f64(&spec).unwrap(), &mut bytes, |x, out| {
                     out.extend(x.to_le_bytes());
                 });
             }
@@ -201,7 +240,13 @@ fn end(rng: &mut fastrand::Rng) -> f64 {
 }
 
 /// One interval: mostly proper, now and then NaN or reversed.
-fn interval(rng: &mut fastrand::Rng) -> [f64; 2] {
+///
+/// Of many coordinates few are special, or no row would have a result to compare.
+fn interval(rng: &mut fastrand::Rng, coordinates: usize) -> [f64; 2] {
+    if rng.usize(0..10 * coordinates) >= 10 {
+        let lo = rng.f64() * 8.0 - 4.0;
+        return [lo, lo + rng.f64() * 1e-3];
+    }
     match rng.u32(0..20) {
         0 => [f64::NAN, end(rng)],
         1 => [end(rng), f64::NAN],
@@ -230,8 +275,9 @@ fn ends<T: Real>([lo, hi]: [T; 2]) -> [T; 2] {
 fn data<T: Real>(case: &Case, kernel: &dyn Kernel<T>, bytes: &mut Vec<u8>, put: fn(T, &mut Vec<u8>)) {
     let mut rng = fastrand::Rng::with_seed(case.rows as u64);
     let points = case.routine.kind == Kind::Points;
+    let coordinates = case.routine.variables.max(1);
     let mut numbers = |count: usize| -> Vec<T> {
-        let draw = |_| if points { vec![end(&mut rng)] } else { interval(&mut rng).to_vec() };
+        let draw = |_| if points { vec![end(&mut rng)] } else { interval(&mut rng, coordinates).to_vec() };
         (0..count).flat_map(draw).map(T::nearest).collect()
     };
     let inputs = numbers(case.rows * case.routine.variables);

@@ -9,7 +9,6 @@
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::AbiParam;
 use cranelift_codegen::ir::Block;
-use cranelift_codegen::ir::GlobalValue;
 use cranelift_codegen::ir::InstBuilder;
 use cranelift_codegen::ir::MemFlagsData;
 use cranelift_codegen::ir::Signature;
@@ -26,6 +25,7 @@ use cranelift_frontend::FunctionBuilderContext;
 use crate::codegen::emit;
 use crate::codegen::emit::VECTOR;
 use crate::codegen::object::Kind;
+use crate::codegen::object::Parts;
 use crate::codegen::object::Routine;
 use crate::codegen::object::lanes::Format;
 use crate::codegen::object::lanes::Lanes;
@@ -156,34 +156,8 @@ pub fn signature() -> Signature {
     signature
 }
 
-/// Fills `context` with the body on packets, which only calls the kernel.
-pub fn packets(shape: &Shape, defaults: Option<GlobalValue>, isa: &dyn TargetIsa, context: &mut Context) {
-    build(shape, Layout::Packets, defaults, isa, context, |body| {
-        let [inputs, outputs, count] = [record::INPUTS, record::OUTPUTS, record::COUNT].map(|field| body.field(field));
-        let uniforms = body.own_or_default(|_, given| given);
-        body.call_kernel([inputs, outputs, uniforms, count]);
-    });
-}
-
-/// Fills `context` with the body on rows or columns.
-pub fn chunks(
-    shape: &Shape,
-    layout: Layout,
-    defaults: Option<GlobalValue>,
-    isa: &dyn TargetIsa,
-    context: &mut Context,
-) {
-    build(shape, layout, defaults, isa, context, |body| body.chunks());
-}
-
-fn build(
-    shape: &Shape,
-    layout: Layout,
-    defaults: Option<GlobalValue>,
-    isa: &dyn TargetIsa,
-    context: &mut Context,
-    fill: impl FnOnce(&mut Body),
-) {
+/// Fills `context` with a body.
+pub fn define(shape: &Shape, layout: Layout, parts: Parts, isa: &dyn TargetIsa, context: &mut Context) {
     context.func.signature = signature();
     let mut builder_context = FunctionBuilderContext::new();
     let mut b = FunctionBuilder::new(&mut context.func, &mut builder_context);
@@ -191,8 +165,26 @@ fn build(
     b.append_block_params_for_function_params(entry);
     b.switch_to_block(entry);
     let record = b.block_params(entry)[0];
-    let mut body = Body { b: &mut b, shape, layout, defaults, record };
-    fill(&mut body);
+    let mut body = Body { b: &mut b, shape, layout, parts, record };
+    if let Some(probe) = body.parts.probe {
+        body.b.ins().call(probe, &[]);
+    }
+    match layout {
+        Layout::Packets => body.packets(),
+        Layout::Rows | Layout::Columns => body.chunks(),
+    }
+    b.ins().return_(&[]);
+    b.seal_all_blocks();
+    b.finalize(isa.frontend_config());
+}
+
+/// Fills `context` with a function that does nothing but touch the pages of a frame of so many bytes.
+pub fn define_probe(bytes: u32, isa: &dyn TargetIsa, context: &mut Context) {
+    let mut builder_context = FunctionBuilderContext::new();
+    let mut b = FunctionBuilder::new(&mut context.func, &mut builder_context);
+    let entry = b.create_block();
+    b.switch_to_block(entry);
+    b.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, bytes, 4));
     b.ins().return_(&[]);
     b.seal_all_blocks();
     b.finalize(isa.frontend_config());
@@ -202,7 +194,7 @@ struct Body<'a, 'f> {
     b: &'a mut FunctionBuilder<'f>,
     shape: &'a Shape,
     layout: Layout,
-    defaults: Option<GlobalValue>,
+    parts: Parts,
     record: Value,
 }
 
@@ -239,7 +231,7 @@ impl<'f> Body<'_, 'f> {
     /// The caller's parameters through `convert`, or those of a caller that gives none.
     fn own_or_default(&mut self, convert: impl FnOnce(&mut Self, Value) -> Value) -> Value {
         let given = self.field(record::PARAMETERS);
-        let Some(defaults) = self.defaults else { return given };
+        let Some(defaults) = self.parts.defaults else { return given };
         let [own, default, done] = [(); 3].map(|()| self.b.create_block());
         self.b.append_block_param(done, types::I64);
         self.b.ins().brif(given, own, &[], default, &[]);
@@ -266,6 +258,13 @@ impl<'f> Body<'_, 'f> {
         let address = self.b.ins().stack_addr(types::I64, slot, 0);
         let beyond = self.b.ins().iadd_imm_s(address, PACKET - 1);
         self.b.ins().band_imm_s(beyond, -PACKET)
+    }
+
+    /// Packets are what kernels take.
+    fn packets(&mut self) {
+        let [inputs, outputs, count] = [record::INPUTS, record::OUTPUTS, record::COUNT].map(|field| self.field(field));
+        let uniforms = self.own_or_default(|_, given| given);
+        self.call_kernel([inputs, outputs, uniforms, count]);
     }
 
     fn chunks(&mut self) {
@@ -510,17 +509,14 @@ impl<'f> Body<'_, 'f> {
         let mut walk = self.walk(arrays.verdicts, arrays.count, rows, self.shape.outputs * size, size);
         for output in 0..self.shape.outputs {
             let places: Vec<Place> = self.next(&mut walk, size);
-            let places = match rows.in_a_row {
-                true => (0..self.shape.format.lanes())
-                    .map(|lane| Place { offset: places[0].offset + (lane * size) as i32, ..places[0] })
-                    .collect(),
-                false => places,
-            };
             let mut words = word(self, output);
             if self.shape.silent {
                 words = self.b.ins().bxor(words, words);
             }
-            self.lanes().scatter_words(words, &places);
+            match rows.in_a_row {
+                true => self.lanes().store_words(words, places[0]),
+                false => self.lanes().scatter_words(words, &places),
+            }
         }
         self.b.ins().jump(done, &[]);
         self.b.switch_to_block(done);

@@ -181,6 +181,22 @@ impl Lanes<'_, '_> {
         self.b.ins().bitcast(self.format.number, little_endian(), picked)
     }
 
+    /// The low 32 bits of every lane in a row.
+    pub fn store_words(&mut self, vector: Value, place: Place) {
+        if self.format.scalar == types::F32 {
+            return self.store(vector, place);
+        }
+        let halves = Lanes { b: &mut *self.b, format: Format::of(Precision::Single) }.low_halves(vector);
+        let words = self.b.ins().extractlane(halves, 0);
+        self.b.ins().store(THEIRS, words, place.base, place.offset);
+    }
+
+    /// The even lanes of this format, as one number.
+    fn low_halves(&mut self, vector: Value) -> Value {
+        let even = self.shuffle(vector, vector, &[0, 2, 0, 2]);
+        self.b.ins().bitcast(types::I64X2, little_endian(), even)
+    }
+
     /// The low 32 bits of every lane to the places.
     pub fn scatter_words(&mut self, vector: Value, places: &[Place]) {
         let words = if self.format.scalar == types::F64 { types::I64X2 } else { types::I32X4 };

@@ -21,7 +21,10 @@ mod lanes;
 mod stub;
 
 use cranelift_codegen::Context;
+use cranelift_codegen::ir::FuncRef;
+use cranelift_codegen::ir::GlobalValue;
 use cranelift_codegen::ir::Signature;
+use cranelift_codegen::isa::CallConv;
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_module::DataDescription;
 use cranelift_module::DataId;
@@ -48,7 +51,7 @@ use body::Shape;
 pub const ABI_VERSION: u32 = 1;
 
 /// Stack of one kernel at most. With what the code around it takes ([`body::MAX_BUFFER`]) a call stays below 1 MiB.
-const MAX_KERNEL_FRAME: usize = 512 << 10;
+const MAX_KERNEL_FRAME: u32 = 512 << 10;
 
 /// A micro-architecture level of x86-64, as the psABI numbers them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -150,6 +153,17 @@ pub fn emit(unit: &Unit) -> Result<Vec<u8>, Diagnostic> {
     builder.module.finish().emit().map_err(|error| clif::internal(&error))
 }
 
+/// What is guarded at the end of a stack, at least.
+const PAGE: u32 = 4 << 10;
+
+/// What a body refers to besides its record.
+struct Parts {
+    /// The uniforms of a caller that gives no parameters.
+    defaults: Option<GlobalValue>,
+    /// To call before the kernel.
+    probe: Option<FuncRef>,
+}
+
 /// A compiled kernel of the object.
 struct Kernel {
     function: FuncId,
@@ -157,6 +171,8 @@ struct Kernel {
     start: usize,
     /// From which level on it is called.
     level: u32,
+    /// Bytes of stack.
+    frame: u32,
 }
 
 struct Builder {
@@ -206,6 +222,7 @@ impl Builder {
         let shape = Shape::of(routine)?;
         let kernels = self.kernels(routine)?;
         let defaults = self.defaults(routine)?;
+        let probe = self.probe(routine, &kernels)?;
         let in_mode = match routine.rounding {
             Rounding::Outward => self.upward,
             Rounding::Nearest => self.nearest,
@@ -215,11 +232,11 @@ impl Builder {
             let signature = body::signature();
             let body = declare(&mut self.module, &format!("{symbol}.body"), Linkage::Local, &signature)?;
             let mut context = Context::new();
-            let defaults = defaults.map(|data| self.module.declare_data_in_func(data, &mut context.func));
-            match layout {
-                Layout::Packets => body::packets(&shape, defaults, self.module.isa(), &mut context),
-                _ => body::chunks(&shape, layout, defaults, self.module.isa(), &mut context),
-            }
+            let parts = Parts {
+                defaults: defaults.map(|data| self.module.declare_data_in_func(data, &mut context.func)),
+                probe: probe.map(|function| self.module.declare_func_in_func(function, &mut context.func)),
+            };
+            body::define(&shape, layout, parts, self.module.isa(), &mut context);
             self.define(body, &mut context)?;
             entry::entry(&mut self.module, &symbol, layout, routine.kind, self.level, &kernels, in_mode, body)?;
         }
@@ -240,24 +257,39 @@ impl Builder {
                     let isa = clif::isa_for(level.machine(), program)?;
                     let name = format!("{}.v{}", routine.symbol, level.number());
                     let (code, start) = code(program, &isa, level.registers())?;
-                    kernels.push(Kernel { function: self.kernel(&name, &code)?, start, level: level.number() });
+                    kernels.push(self.kernel(&name, &code, start, level.number())?);
                 }
             }
             Target::Aarch64 => {
                 let isa = clif::isa_for(Machine::Aarch64, program)?;
                 let (code, start) = code(program, &isa, &[])?;
                 let name = format!("{}.neon", routine.symbol);
-                kernels.push(Kernel { function: self.kernel(&name, &code)?, start, level: 0 });
+                kernels.push(self.kernel(&name, &code, start, 0)?);
             }
         }
         Ok(kernels)
     }
 
-    fn kernel(&mut self, name: &str, code: &clif::Code) -> Result<FuncId, Diagnostic> {
+    fn kernel(&mut self, name: &str, code: &clif::Code, start: usize, level: u32) -> Result<Kernel, Diagnostic> {
         let function = declare(&mut self.module, name, Linkage::Local, &clif::signature())?;
         // The alignment of a cache line is that of the widest constant, too.
         self.module.define_function_bytes(function, 64, &code.bytes, &code.relocations).map_err(fault)?;
-        Ok(function)
+        Ok(Kernel { function, start, level, frame: code.frame })
+    }
+
+    /// A function that touches as much stack as the kernels of a routine take, page by page, which the kernels themselves do
+    /// not do; none if they cannot pass over a page.
+    fn probe(&mut self, routine: &Routine, kernels: &[Kernel]) -> Result<Option<FuncId>, Diagnostic> {
+        let frame = kernels.iter().map(|kernel| kernel.frame).max().unwrap_or(0);
+        if frame < PAGE / 2 {
+            return Ok(None);
+        }
+        let signature = Signature::new(CallConv::SystemV);
+        let probe = declare(&mut self.module, &format!("{}.probe", routine.symbol), Linkage::Local, &signature)?;
+        let mut context = Context::new();
+        body::define_probe(frame + PAGE, self.module.isa(), &mut context);
+        self.define(probe, &mut context)?;
+        Ok(Some(probe))
     }
 
     /// The parameters of a caller that gives none, as the kernel takes them.
@@ -282,16 +314,16 @@ fn code(
     for &registers in registers {
         let narrow = clif::compile(program, isa, registers.bytes())?;
         // A widened frame grows with the registers.
-        let frame = narrow.frame as usize * (registers.bytes() / clif::VECTOR);
+        let frame = narrow.frame * (registers.bytes() / clif::VECTOR) as u32;
         if frame > MAX_KERNEL_FRAME {
             continue;
         }
         if let Some(wide) = widen::widen(&narrow.bytes, registers) {
-            return Ok((clif::Code { bytes: wide.bytes, ..narrow }, wide.entry));
+            return Ok((clif::Code { bytes: wide.bytes, frame, ..narrow }, wide.entry));
         }
     }
     let code = clif::compile(program, isa, clif::VECTOR)?;
-    if code.frame as usize > MAX_KERNEL_FRAME {
+    if code.frame > MAX_KERNEL_FRAME {
         return Err(clif::too_large(program));
     }
     Ok((code, 0))
