@@ -16,6 +16,7 @@ const APPLICATIONS: &[(&str, &[&str])] = &[
     ("global_minimum", &["Himmelblau", "Rosenbrock", "Ackley", "Rastrigin", "all minima proved"]),
     ("reach", &["no contradiction in", "joint boxes at c = 0.5", "wrote"]),
     ("march", &["all from one compilation", "no ray went through the surface", "wrote"]),
+    ("root_finder", &["a ray meets the Barth sextic first at"]),
     ("plugin", &["the workers called all of them", "larger than allowed", "error[E"]),
 ];
 
@@ -82,4 +83,4 @@ macro_rules! applications {
     };
 }
 
-applications! { inflections range_search motion annulus surfaces global_minimum reach march plugin }
+applications! { inflections range_search motion annulus surfaces global_minimum reach march root_finder plugin }

@@ -78,6 +78,7 @@ fn wait(child: &Child) -> (i32, Usage) {
     }
 }
 
+#[expect(clippy::zombie_processes, reason = "`wait4` waits, and says what the child has used")]
 fn measure(mut command: Command, folder: &Path) -> Outcome {
     let said = folder.join("said");
     let output = fs::File::create(&said).unwrap();

@@ -56,7 +56,8 @@ const CALLS: &str = r#" * For every function and kernel, with `count` rows:
  * order of the variables.
  *
  * An enclosure holds all values of the function on the box, for all values of the parameters in their intervals. Ends
- * may be infinite. A box whose ends are NaN or not in order stands for the whole line. Where the function is proved
+ * may be infinite, but not both the same infinity, of which no bound means anything. A box whose ends are NaN or not in
+ * order stands for the whole line. Where the function is proved
  * undefined, the enclosure is empty: lower end +inf, upper end -inf. Parameters must lie inside their declared ranges:
  * kernels are compiled for these, and say nothing about others. Values at points are rounded to nearest and prove
  * nothing.

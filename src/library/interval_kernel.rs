@@ -122,8 +122,8 @@ impl<T: Real> IntervalKernel<T> {
         inputs.zip(outputs).try_for_each(|(inputs, outputs)| self.enclose_into(inputs, outputs))
     }
 
-    /// All outputs over boxes in columns: `boxes[v]` holds the lower and the upper ends of variable v. Ends that are NaN or
-    /// not in order stand for the whole line. Columns of `enclosures` are made as long as needed and reused.
+    /// All outputs over boxes in columns: `boxes[v]` holds the lower and the upper ends of variable v. Ends that are NaN, not in
+    /// order or both the same infinity stand for the whole line. Columns of `enclosures` are made as long as needed and reused.
     ///
     /// # Errors
     /// If there is not a column for each variable, or one is longer than another.
@@ -135,7 +135,7 @@ impl<T: Real> IntervalKernel<T> {
         }
         let width = self.outputs().len();
         enclosures.resize(width, count);
-        let nan = T::nearest(f64::NAN);
+        let (nan, infinity) = (T::nearest(f64::NAN), T::nearest(f64::INFINITY));
         self.shared.run(
             count,
             |rows, packets| {
@@ -143,15 +143,20 @@ impl<T: Real> IntervalKernel<T> {
                     let [lower, upper] = slots else { unreachable!("two slots a variable") };
                     let ends = lo[rows.clone()].iter().zip(&hi[rows.clone()]);
                     for ((lo, hi), (lower, upper)) in ends.zip(lower.lanes_mut().iter_mut().zip(upper.lanes_mut())) {
-                        (*lower, *upper) = if lo <= hi { (lo.negated(), *hi) } else { (nan, nan) };
+                        (*lower, *upper) = if lo <= hi && *lo < infinity && *hi > infinity.negated() {
+                            (lo.negated(), *hi)
+                        } else {
+                            (nan, nan)
+                        };
                     }
                 }
             },
             |rows, packets| {
                 for (output, slots) in packets.chunks_exact(3).enumerate() {
                     let results = enclosures.lo[output][rows.clone()].iter_mut().zip(slots[0].lanes());
-                    results.for_each(|(lo, lower)| *lo = lower.negated());
-                    enclosures.hi[output][rows.clone()].copy_from_slice(&slots[1].lanes()[..rows.len()]);
+                    results.for_each(|(lo, lower)| *lo = bounded(*lower, infinity).negated());
+                    let results = enclosures.hi[output][rows.clone()].iter_mut().zip(slots[1].lanes());
+                    results.for_each(|(hi, upper)| *hi = bounded(*upper, infinity));
                     let verdicts = enclosures.verdict[output][rows.clone()].iter_mut().zip(slots[2].lanes());
                     verdicts.for_each(|(verdict, bits)| *verdict = self.verdict(*bits));
                 }
@@ -241,6 +246,11 @@ impl<T: Real> IntervalKernel<T> {
     fn verdict(&self, bits: T) -> Verdict {
         Verdict(if self.rigorous { bits.verdict() } else { 0 })
     }
+}
+
+/// An end as kernels give it, where NaN stands for infinity.
+fn bounded<T: Real>(end: T, infinity: T) -> T {
+    if end <= infinity { end } else { infinity }
 }
 
 /// What holds over the empty set.

@@ -218,6 +218,9 @@ fn function(
         if inputs.iter().any(|input| input == name) {
             continue;
         }
+        if lowered.name.is_empty() {
+            return Err(errors::no_value(name, lowered.span));
+        }
         if variables.iter().any(|variable| variable == name) {
             let title =
                 format!("`{}` depends on the coordinate `{name}` and on an argument of that name", lowered.name);

@@ -6,10 +6,13 @@ use std::io::BufWriter;
 use std::io::Write;
 use std::path::Path;
 
+/// Writes a source to a folder, its repetitions divided by a number.
+type Writer = Box<dyn Fn(&Path, usize) + Send + Sync>;
+
 /// One source: its name, how it is written to `main.imp` of a folder, and why it is harmless if it is accepted.
 pub struct Case {
     pub name: &'static str,
-    write: Box<dyn Fn(&Path, usize) + Send + Sync>,
+    write: Writer,
     pub harmless: Option<&'static str>,
 }
 
