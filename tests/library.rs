@@ -216,3 +216,53 @@ fn results_can_be_stored() {
     assert_eq!(serde_json::from_str::<Enclosure>(&json).unwrap(), enclosure);
     assert_eq!(enclosure.to_string(), "[0.25, 0.5], positive, continuous");
 }
+
+#[test]
+fn no_name_of_a_formula_is_one_of_ours() {
+    let names = ["nothing", "unused", "ray_t", "ray_ox", "ray_m", "roots_centre", "u_of_fn"];
+    for name in names {
+        let text = format!("param {name} = 4 in [0, 10]\nfn f(x) = x - {name}\nsurface s: x^2 + y^2 + z^2 = {name}");
+        let program = Program::parse(&text).unwrap();
+        let constant = program.expression(&format!("{name} + 1"), &[]).unwrap();
+        assert_eq!(
+            constant.intervals(&Options::default()).unwrap().enclose(&[]).unwrap().interval,
+            Interval::point(5.0)
+        );
+        let found = program.function("f").unwrap().roots(interval(0.0, 10.0)).unwrap();
+        assert!(found.is_complete() && found.proved.len() == 1 && found.proved[0].bracket.contains(4.0), "{found}");
+        let rays = program.function("s").unwrap().ray_finder().unwrap();
+        let found = rays.roots(&[0.0, 0.0, 5.0], &[0.0, 0.0, -1.0], interval(0.0, 10.0)).unwrap();
+        let hits: Vec<f64> = found.proved.iter().map(|root| root.bracket.mid()).collect();
+        assert_eq!(hits, [3.0, 7.0], "{name}");
+    }
+}
+
+#[test]
+fn arguments_have_names_of_their_own() {
+    assert!(matches!(Program::parse("fn f(x, x) = x"), Err(Error::Source(_))));
+    assert!(matches!(imp::Function::parse("x", &["x", "x"]), Err(Error::Source(_))));
+    // A parameter and a variable of one name can be told apart by kernels, which set parameters alone, not by finders.
+    let program = Program::parse("param a = 2\nfn g(x) = a x\nfn f(a, b) = g(a) - b").unwrap();
+    let f = program.function("f").unwrap();
+    let kernel = f.intervals(&Options::default()).unwrap().with("a", Interval::point(3.0)).unwrap();
+    let at = kernel.enclose(&[Interval::point(5.0), Interval::point(1.0)]).unwrap();
+    assert_eq!(at.interval, Interval::point(14.0));
+    assert!(f.root_finder("b").is_err());
+}
+
+#[test]
+fn defaults_lie_in_their_ranges() {
+    let program = Program::parse("param a = 2 sin(pi/6) in [1, 2]\nfn f(x) = a x").unwrap();
+    let f = program.function("f").unwrap();
+    let value = f.parameters()[0].value;
+    assert!(value.contains(1.0) && value.lo() == 1.0);
+    assert!(f.intervals(&Options::default()).unwrap().with("a", value).is_ok());
+}
+
+#[test]
+fn a_domain_that_is_empty_has_no_values() {
+    let f = imp::Function::parse("x + 1", &["x"]).unwrap();
+    let options = Options::default().on("x", interval(0.0, 1.0)).on("x", interval(2.0, 3.0));
+    let found = f.intervals(&options).unwrap().enclose(&[interval(0.0, 3.0)]).unwrap();
+    assert!(found.is_empty() && found.interval.is_empty(), "{found}");
+}

@@ -16,14 +16,12 @@ use std::time::Instant;
 use imp::Function;
 use imp::Interval;
 use imp::Program;
+use imp::RayFinder;
 use imp::control::Control;
 use imp::interval::Decorated;
 use imp::roots::Options;
-use imp::roots::RaySolver;
 use imp::roots::Roots;
 use imp::roots::Search;
-use imp::roots::Solver;
-use imp::session;
 
 /// A formula, where its zeros are searched, how many are proved, and whether that is all there is.
 struct Case {
@@ -72,17 +70,7 @@ fn function(formula: &str) -> Result<Function, imp::Error> {
         Some((left, right)) => format!("({left}) - ({right})"),
         None => formula.to_owned(),
     };
-    Program::parse("")?.expression(&formula, &["x"])
-}
-
-/// For zeros in a variable, with what is known of inputs.
-fn solver(function: &Function, variable: &str, bounds: &[(&str, Interval)]) -> Result<Solver, imp::Error> {
-    Ok(Solver::new(function.graph(), function.values()[0], variable, bounds, session::backend())?)
-}
-
-fn zeros(function: &Function, range: Interval) -> Result<Roots, imp::Error> {
-    let solver = solver(function, "x", &[("x", range)])?;
-    Ok(solver.roots(&[], range, &Options::default(), &Control::default()))
+    Function::parse(&formula, &["x"])
 }
 
 /// The first lines of an answer: a blurred zero leaves many short intervals unknown.
@@ -106,16 +94,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             Some((formula, range)) => (formula, range.trim().parse::<Interval>().map_err(|e| e.to_string())?),
             None => (argument.as_str(), interval([-100.0, 100.0])?),
         };
-        println!("{formula} = 0 in {range}\n{}\n", shown(&zeros(&function(formula)?, range)?));
+        println!("{formula} = 0 in {range}\n{}\n", shown(&function(formula)?.roots(range)?));
     }
     if arguments.is_empty() {
         for case in cases() {
-            let found = zeros(&function(&case.formula)?, interval(case.range)?)?;
+            let found = function(&case.formula)?.roots(interval(case.range)?)?;
             println!("{}\n{}\n", case.name, shown(&found));
             assert_eq!(found.proved.len(), case.zeros, "{}", case.name);
             assert_eq!(found.is_complete(), case.complete, "{}", case.name);
         }
-        let [near, far] = barth(&ray()?.0)?;
+        let [near, far] = hits(&barth()?.ray_finder()?)?;
         println!("a ray meets the Barth sextic first at {near}, last at {far}");
         assert!(near.lo() > 0.0 && near.hi() < far.lo());
     }
@@ -127,18 +115,16 @@ const BARTH: &str = "let phi = (1 + sqrt(5)) / 2\n\
 const ORIGIN: [f64; 3] = [1.5, 1.25, 1.375];
 const DIRECTION: [f64; 3] = [-1.0, -0.75, -0.875];
 
-fn ray() -> Result<(RaySolver, Function), imp::Error> {
-    let barth = Program::parse(BARTH)?.function("barth")?;
-    let solver = RaySolver::new(barth.graph(), barth.values()[0], &["x", "y", "z"], &[], session::backend())?;
-    Ok((solver, barth))
+fn barth() -> Result<Function, imp::Error> {
+    Program::parse(BARTH)?.function("barth")
 }
 
 /// The first and the last hit of a ray.
-fn barth(solver: &RaySolver) -> Result<[Interval; 2], String> {
-    let found = solver.roots(&ORIGIN, &DIRECTION, &[], interval([0.0, 4.0])?, &Options::default(), &Control::default());
+fn hits(finder: &RayFinder) -> Result<[Interval; 2], Box<dyn Error>> {
+    let found = finder.roots(&ORIGIN, &DIRECTION, interval([0.0, 4.0])?)?;
     match (found.first(), found.proved.last()) {
         (Some(near), Some(far)) if found.is_complete() => Ok([near.bracket, far.bracket]),
-        _ => Err(found.to_string()),
+        _ => Err(found.to_string().into()),
     }
 }
 
@@ -173,19 +159,21 @@ fn time() -> Result<(), Box<dyn Error>> {
     for case in cases().iter().take(5) {
         let function = function(&case.formula)?;
         let (graph, root, range) = (function.graph(), function.values()[0], interval(case.range)?);
-        let solver = solver(&function, "x", &[("x", range)])?;
-        let compiled = shortest(|| solver.roots(&[], range, &options, &control));
+        let finder = function.root_finder("x")?;
+        let compiled = shortest(|| finder.roots(range));
         let reference = shortest(|| Search::new(graph, root, &[Decorated::ENTIRE], 0).run(range, &options, &control));
         report(case.name, compiled, reference);
     }
     kepler()?;
 
-    let (solver, barth) = ray()?;
+    let barth = barth()?;
+    let finder = barth.ray_finder()?;
     let range = interval([0.0, 4.0])?;
-    let compiled = shortest(|| solver.roots(&ORIGIN, &DIRECTION, &[], range, &options, &control));
+    let compiled = shortest(|| finder.roots(&ORIGIN, &DIRECTION, range).unwrap_or_default());
     let boxes = [Decorated::ENTIRE; 3];
+    // The function's variables are the first inputs of its graph.
+    let axes: Vec<&str> = barth.graph().variables()[..3].iter().map(String::as_str).collect();
     let reference = shortest(|| {
-        let axes = ["x", "y", "z"];
         let search = Search::along_ray(barth.graph(), barth.values()[0], &boxes, &axes, &ORIGIN, &DIRECTION);
         search.run(range, &options, &control)
     });
@@ -196,30 +184,25 @@ fn time() -> Result<(), Box<dyn Error>> {
 /// Kepler's equation for a hundred pairs of eccentricity and mean anomaly: one kernel, other parameters each time.
 fn kepler() -> Result<(), Box<dyn Error>> {
     let (options, control) = (Options::default(), Control::default());
-    let function = Program::parse("")?.expression("E - e sin(E) - M", &["E", "e", "M"])?;
+    let function = Function::parse("u - e sin(u) - m", &["u", "e", "m"])?;
     let (graph, root, range) = (function.graph(), function.values()[0], interval([0.0, 7.0])?);
-    let bounds = [("E", range), ("e", Interval::UNIT), ("M", range)];
-    let solver = solver(&function, "E", &bounds)?;
+    let mut finder = function.root_finder("u")?;
     let pairs: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i % 10) / 10.0, 0.06 * f64::from(i)]).collect();
-    let all = |ask: &dyn Fn([f64; 2]) -> Roots| {
+    let all = |ask: &mut dyn FnMut([f64; 2]) -> Roots| {
         let mut together = Roots::default();
         pairs.iter().for_each(|&pair| together.proved.extend(ask(pair).proved));
         together
     };
-    let place = |name: &str| graph.variables().iter().position(|n| n == name).unwrap_or_default();
     let compiled = shortest(|| {
-        all(&|[e, m]| {
-            let value = |name: &String| Interval::point(if name == "e" { e } else { m });
-            let values: Vec<Interval> = solver.parameters().iter().map(value).collect();
-            solver.roots(&values, range, &options, &control)
+        all(&mut |[e, m]| {
+            let set = finder.set("e", Interval::point(e)).and_then(|()| finder.set("m", Interval::point(m)));
+            set.map(|()| finder.roots(range)).unwrap_or_default()
         })
     });
     let reference = shortest(|| {
-        all(&|[e, m]| {
-            let mut boxes = [Decorated::ENTIRE; 3];
-            boxes[place("e")] = Decorated::new(Interval::point(e));
-            boxes[place("M")] = Decorated::new(Interval::point(m));
-            Search::new(graph, root, &boxes, place("E")).run(range, &options, &control)
+        all(&mut |[e, m]| {
+            let number = |x| Decorated::new(Interval::point(x));
+            Search::new(graph, root, &[Decorated::ENTIRE, number(e), number(m)], 0).run(range, &options, &control)
         })
     });
     report("Kepler, e and M swept", compiled, reference);

@@ -152,7 +152,7 @@ fn spills(code: &[u8]) -> usize {
 }
 
 /// Compares all widths; how many vectors the narrow code spills and reloads.
-fn check<T: Format>(program: &LaneProgram, seed: u64, (from, to): (fn(u64) -> T, fn(T) -> u64)) -> usize {
+fn check<T: Format>(program: &LaneProgram, seed: u64, (from, to): Bits<T>) -> usize {
     let mut g = Generator {
         rng: fastrand::Rng::with_seed(seed),
         precision: T::PRECISION,
@@ -185,8 +185,11 @@ fn check<T: Format>(program: &LaneProgram, seed: u64, (from, to): (fn(u64) -> T,
     spills(&emit::machine_code(program, &isa, emit::VECTOR).unwrap())
 }
 
-const SINGLE: (fn(u64) -> f32, fn(f32) -> u64) = (|bits| f32::from_bits(bits as u32), |x| x.to_bits().into());
-const DOUBLE: (fn(u64) -> f64, fn(f64) -> u64) = (f64::from_bits, f64::to_bits);
+/// From the bits of a number, and to them.
+type Bits<T> = (fn(u64) -> T, fn(T) -> u64);
+
+const SINGLE: Bits<f32> = (|bits| f32::from_bits(bits as u32), |x| x.to_bits().into());
+const DOUBLE: Bits<f64> = (f64::from_bits, f64::to_bits);
 
 fn check_both(seed: u64, length: usize, window: usize) -> usize {
     check(&program(seed, Precision::Single, length, window), seed, SINGLE)
