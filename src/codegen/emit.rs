@@ -225,8 +225,8 @@ fn most_live(program: &LaneProgram) -> usize {
     let mut ends = vec![0usize; program.ops.len() + 1];
     let (mut live, mut most) = (0, 0);
     for (i, op) in program.ops.iter().enumerate() {
-        // Constants and inputs are loaded where they are used.
-        if !matches!(op, LaneOp::Const(_) | LaneOp::Bits(_) | LaneOp::Input(_) | LaneOp::Uniform(_)) {
+        // Constants are loaded where they are used; inputs where they stand, which with many parameters is long before.
+        if !matches!(op, LaneOp::Const(_) | LaneOp::Bits(_)) {
             live += 1;
             ends[last_use[i]] += 1;
         }

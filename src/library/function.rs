@@ -261,7 +261,8 @@ impl Function {
             inputs.push(UNUSED.to_owned());
             graph.var(UNUSED);
         }
-        let promised = resolved.parameters.iter().map(|p| (p.name.clone(), Self::range_in(p, precision)));
+        let ranged = resolved.parameters.iter().filter(|parameter| parameter.range.is_some());
+        let promised = ranged.map(|p| (p.name.clone(), Self::range_in(p, precision)));
         Ok(Spec {
             inputs,
             uniforms: resolved.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
