@@ -219,6 +219,10 @@ impl Program {
         let target = import::resolve_path(&sources.get(self.files[from].id).name, path);
         let key = target.to_string_lossy().into_owned();
         if let Some(&file) = self.by_path.get(&key) {
+            if file == from {
+                diagnostics.push(errors::import_failed(path, span, "this is the file itself"));
+                return None;
+            }
             return Some(file);
         }
         let imported = self.files.iter().skip(1).filter(|file| !file.origin.library).count();
