@@ -9,7 +9,7 @@ cd "$(dirname "$0")/../.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-OBJECTS=$folder cargo test --test objects -- --ignored --exact objects_for_other_machines
+OBJECTS=$folder cargo test --test objects -- --exact objects_for_other_machines
 driver=$PWD/tests/objects/driver.c
 cd "$folder"
 gcc -O1 -I. -static "$driver" table.c x86_64.o -o x86_64 -lm -lpthread
