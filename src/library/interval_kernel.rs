@@ -220,7 +220,10 @@ impl<T: Real> IntervalKernel<T> {
                 for (lane, row) in rows.enumerate() {
                     let nowhere = row_of(row).iter().any(|interval| interval.is_empty());
                     take(row, &|output| match nowhere {
-                        true => Enclosure { verdict: Verdict(if self.rigorous { verdict::EMPTY } else { 0 }), ..EMPTY },
+                        true => Enclosure {
+                            interval: Interval::EMPTY,
+                            verdict: self.verdict(T::from_verdict(verdict::EMPTY)),
+                        },
                         false => self.enclosure(packets, output, lane),
                     });
                 }
@@ -252,9 +255,6 @@ impl<T: Real> IntervalKernel<T> {
 fn bounded<T: Real>(end: T, infinity: T) -> T {
     if end <= infinity { end } else { infinity }
 }
-
-/// What holds over the empty set.
-const EMPTY: Enclosure = Enclosure { interval: Interval::EMPTY, verdict: Verdict(verdict::EMPTY) };
 
 /// An interval as kernels take it: its lower end negated, and its upper end, rounded outward. Of the empty set both are NaN.
 fn ends<T: Real>(interval: Interval) -> [T; 2] {
